@@ -1,0 +1,136 @@
+#include "base/comm.hpp"
+
+#include <algorithm>
+#include <climits>
+#include <exception>
+
+#include "base/petsc.hpp"
+
+namespace trocar::base {
+namespace {
+
+/// A caught failure as plain data that can cross ranks.
+struct Caught
+{
+  int code = 0;
+  std::string line;
+};
+
+Caught run_guarded(const std::function<void()>& work)
+{
+  try {
+    work();
+    return {};
+  } catch (const core::Failure& failure) {
+    return {static_cast<int>(failure.code()), failure.what()};
+  } catch (const std::exception& error) {
+    return {static_cast<int>(core::ExitCode::internal), error.what()};
+  }
+}
+
+void broadcast_from(const Comm& comm, int source, Caught& caught)
+{
+  TROCAR_MPI(MPI_Bcast(&caught.code, 1, MPI_INT, source, comm.get()));
+  int length = static_cast<int>(caught.line.size());
+  TROCAR_MPI(MPI_Bcast(&length, 1, MPI_INT, source, comm.get()));
+  caught.line.resize(static_cast<std::size_t>(length));
+  TROCAR_MPI(MPI_Bcast(caught.line.data(), length, MPI_CHAR, source, comm.get()));
+}
+
+}  // namespace
+
+Comm::Comm(MPI_Comm comm) : comm_(comm)
+{
+  TROCAR_MPI(MPI_Comm_rank(comm, &rank_));
+  TROCAR_MPI(MPI_Comm_size(comm, &size_));
+}
+
+double Comm::sum(double value) const
+{
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, comm_));
+  return value;
+}
+
+long long Comm::sum(long long value) const
+{
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_LONG_LONG, MPI_SUM, comm_));
+  return value;
+}
+
+double Comm::max(double value) const
+{
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm_));
+  return value;
+}
+
+bool Comm::all(bool value) const
+{
+  int flag = value ? 1 : 0;
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MIN, comm_));
+  return flag == 1;
+}
+
+bool Comm::any(bool value) const
+{
+  return !all(!value);
+}
+
+template <class T>
+void Comm::broadcast_array(std::vector<T>& values, MPI_Datatype type) const
+{
+  long long size = static_cast<long long>(values.size());
+  TROCAR_MPI(MPI_Bcast(&size, 1, MPI_LONG_LONG, 0, comm_));
+  values.resize(static_cast<std::size_t>(size));
+  for (long long at = 0; at < size; at += INT_MAX / 2) {
+    const int count = static_cast<int>(std::min<long long>(INT_MAX / 2, size - at));
+    TROCAR_MPI(MPI_Bcast(values.data() + at, count, type, 0, comm_));
+  }
+}
+
+void Comm::broadcast(std::vector<double>& values) const
+{
+  broadcast_array(values, MPI_DOUBLE);
+}
+void Comm::broadcast(std::vector<int>& values) const
+{
+  broadcast_array(values, MPI_INT);
+}
+void Comm::broadcast(std::vector<long long>& values) const
+{
+  broadcast_array(values, MPI_LONG_LONG);
+}
+
+void Comm::broadcast(std::string& text) const
+{
+  std::vector<char> bytes(text.begin(), text.end());
+  broadcast_array(bytes, MPI_CHAR);
+  text.assign(bytes.begin(), bytes.end());
+}
+
+void Comm::broadcast(std::vector<std::string>& words) const
+{
+  std::vector<int> count{static_cast<int>(words.size())};
+  broadcast(count);
+  words.resize(static_cast<std::size_t>(count.front()));
+  for (std::string& word : words) broadcast(word);
+}
+
+void on_root(const Comm& comm, const std::function<void()>& work)
+{
+  Caught caught;
+  if (comm.root()) caught = run_guarded(work);
+  broadcast_from(comm, 0, caught);
+  if (caught.code != 0) throw core::Failure(static_cast<core::ExitCode>(caught.code), caught.line);
+}
+
+void agreed(const Comm& comm, const std::function<void()>& work)
+{
+  Caught caught = run_guarded(work);
+  int first = caught.code != 0 ? comm.rank() : comm.size();
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm.get()));
+  if (first == comm.size()) return;
+  broadcast_from(comm, first, caught);
+  throw core::Failure(static_cast<core::ExitCode>(caught.code), caught.line);
+}
+
+}  // namespace trocar::base

@@ -1,0 +1,116 @@
+#include "constraint/reduce.hpp"
+
+#include <Eigen/Sparse>
+#include <algorithm>
+
+namespace trocar::constraint {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// Ĥ (rows x 3 probed nodes): the rows in terms of the probes.
+Sparse rows_on_probes(const Set& set, const std::vector<int>& nodes)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < set.size(); ++i) {
+    const Row& row = set.rows()[static_cast<std::size_t>(i)];
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double weight = row.anchor.weight[static_cast<Eigen::Index>(a)];
+      if (weight == 0.0) continue;
+      const auto at = std::lower_bound(nodes.begin(), nodes.end(), row.anchor.node[a]);
+      const int slot = 3 * static_cast<int>(at - nodes.begin());
+      for (int axis = 0; axis < 3; ++axis)
+        entries.emplace_back(i, slot + axis, weight * row.direction[axis]);
+    }
+  }
+  Sparse H(set.size(), 3 * static_cast<Eigen::Index>(nodes.size()));
+  H.setFromTriplets(entries.begin(), entries.end());
+  return H;
+}
+
+/// H_nᵀ of one body (its dofs x rows), zero columns for rows of other bodies.
+core::MatX levers(const Set& set, int body, Eigen::Index dofs)
+{
+  core::MatX H = core::MatX::Zero(dofs, set.size());
+  for (int i = 0; i < set.size(); ++i) {
+    const Row& row = set.rows()[static_cast<std::size_t>(i)];
+    if (row.body != body) continue;
+    for (const auto& [dof, coefficient] : row.lever) H(dof, i) += coefficient;
+  }
+  return H;
+}
+
+}  // namespace
+
+std::vector<int> Set::probed_nodes() const
+{
+  std::vector<int> nodes;
+  for (const Row& row : rows_)
+    for (std::size_t a = 0; a < 4; ++a)
+      if (row.anchor.weight[static_cast<Eigen::Index>(a)] != 0.0)
+        nodes.push_back(row.anchor.node[a]);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+Reduced reduce(const Set& set, const fem::Space& space, const fem::OwnedField& free_increment,
+               solve::IsolatedCompliance& compliance, const std::vector<SmallBody>& bodies)
+{
+  Reduced reduced;
+  law::Problem& problem = reduced.problem;
+  const std::vector<int> nodes = set.probed_nodes();
+  const core::MatX C = compliance.block({nodes, {}}, reduced.compliance);
+  const Sparse H = rows_on_probes(set, nodes);
+  const core::MatX HC = H * C;
+  problem.W = HC * H.transpose();
+
+  const fem::GlobalField u = space.gather(free_increment);
+  core::VecX at_probes(3 * static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    at_probes.segment<3>(3 * static_cast<Eigen::Index>(k)) = u.node(nodes[k]);
+  problem.g = H * at_probes;
+
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Eigen::Index dofs = bodies[b].free_increment.size();
+    if (dofs == 0) continue;
+    const core::MatX H_t = levers(set, static_cast<int>(b), bodies[b].held + dofs).bottomRows(dofs);
+    problem.W.noalias() += H_t.transpose() * bodies[b].factor.solve(H_t);
+    problem.g -= H_t.transpose() * bodies[b].free_increment;
+  }
+  problem.W = 0.5 * (problem.W + problem.W.transpose()).eval();
+
+  problem.bound.resize(set.size());
+  problem.start.resize(set.size());
+  for (int i = 0; i < set.size(); ++i) {
+    const Row& row = set.rows()[static_cast<std::size_t>(i)];
+    problem.g[i] += row.gap;
+    problem.bound[i] = row.bound;
+    problem.start[i] = row.start;
+    problem.kind.push_back(row.kind);
+    problem.group.push_back(row.point);
+  }
+  return reduced;
+}
+
+fem::OwnedField tissue_forces(const Set& set, const core::VecX& lambda, const fem::Space& space)
+{
+  fem::OwnedField forces = space.zero();
+  for (int i = 0; i < set.size(); ++i) {
+    const Row& row = set.rows()[static_cast<std::size_t>(i)];
+    for (std::size_t a = 0; a < 4; ++a) {
+      const int local = space.owned_local(row.anchor.node[a]);
+      if (local >= 0)
+        forces.node(local) +=
+            row.anchor.weight[static_cast<Eigen::Index>(a)] * lambda[i] * row.direction;
+    }
+  }
+  return forces;
+}
+
+core::VecX body_forces(const Set& set, const core::VecX& lambda, int body, Eigen::Index dofs)
+{
+  return levers(set, body, dofs) * lambda;
+}
+
+}  // namespace trocar::constraint

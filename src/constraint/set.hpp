@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "core/math.hpp"
+#include "law/problem.hpp"
+
+namespace trocar::constraint {
+
+using core::Vec3;
+
+/// Where a row takes hold of the tissue: a material point in a tet, by file nodes and weights.
+struct Anchor
+{
+  std::array<int, 4> node;
+  Eigen::Vector4d weight;  ///< barycentric; a zero weight makes no probe
+};
+
+/// One constraint row: δ = gap + direction·u(anchor) - h·w, where w are the increments of the
+/// small body (the needle). λ > 0 pushes the tissue along `direction` and the body against it.
+struct Row
+{
+  Anchor anchor;
+  Vec3 direction;                             ///< unit, world frame
+  int body = -1;                              ///< index of the small body, -1: nothing moves there
+  std::vector<std::pair<int, double>> lever;  ///< (dof of the body, coefficient)
+  double gap = 0.0;                           ///< δ at zero increments [m]
+  law::RowKind kind = law::RowKind::bilateral;
+  double bound = 0.0;  ///< F of a box row [N]
+  double start = 0.0;  ///< multiplier to start from [N]
+  int point = 0;       ///< coupling point, ascending along the set
+};
+
+/// The rows of one step. Born and gone within it.
+class Set
+{
+ public:
+  bool empty() const { return rows_.empty(); }
+  int size() const { return static_cast<int>(rows_.size()); }
+  void add(Row row) { rows_.push_back(std::move(row)); }
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// File nodes with a non-zero weight, ascending: what the rows probe.
+  std::vector<int> probed_nodes() const;
+
+ private:
+  std::vector<Row> rows_;
+};
+
+/// A body so small that its operator is dense and known to every rank.
+/// The first `held` dofs are prescribed, the rest are free.
+struct SmallBody
+{
+  int held = 0;
+  Eigen::LLT<core::MatX> factor;  ///< of A_n on its free dofs
+  core::VecX free_increment;      ///< A_n⁻¹ r on its free dofs [m, rad]
+};
+
+}  // namespace trocar::constraint

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace trocar::core {
+
+/// What the process returns to the shell; the numbers follow sysexits.h where it has one.
+enum class ExitCode : int {
+  ok = 0,
+  internal = 1,
+  options = 64,
+  data = 65,
+  solver = 70,
+  output = 74,
+  checkpoint = 75
+};
+
+/// A reason to stop, in one line for the user. Thrown on every rank or, from one rank only,
+/// turned into an agreed stop by `base::on_root` or into MPI_Abort by `main`.
+class Failure : public std::runtime_error
+{
+ public:
+  Failure(ExitCode code, const std::string& line) : std::runtime_error(line), code_(code) {}
+  ExitCode code() const noexcept { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+inline Failure option_error(const std::string& line)
+{
+  return {ExitCode::options, line};
+}
+inline Failure data_error(const std::string& line)
+{
+  return {ExitCode::data, line};
+}
+inline Failure solver_error(const std::string& line)
+{
+  return {ExitCode::solver, line};
+}
+inline Failure output_error(const std::string& line)
+{
+  return {ExitCode::output, line};
+}
+
+}  // namespace trocar::core

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <chrono>
+
+namespace trocar::core {
+
+/// Wall time since construction.
+class Stopwatch
+{
+ public:
+  double seconds() const
+  {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace trocar::core

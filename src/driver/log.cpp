@@ -1,0 +1,76 @@
+#include "driver/log.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "driver/recorder.hpp"
+
+namespace trocar::driver {
+
+Log::Log(const Simulation& simulation) : simulation_(&simulation) {}
+
+bool Log::speaks() const
+{
+  return simulation_->space().comm().root() && !simulation_->scenario().output.quiet;
+}
+
+void Log::set_up(double seconds) const
+{
+  const std::string solver = simulation_->tissue().describe_solver();
+  if (!speaks()) return;
+  const Scenario& scenario = simulation_->scenario();
+  const mesh::Mesh& mesh = scenario.mesh;
+  const mesh::Quality q = mesh::quality(mesh);
+  std::printf("%s\n", build_description().c_str());
+  std::printf("mesh %s: %d nodes, %d tets, %d dofs, volume %.6g m^3, edges %.3g-%.3g m\n",
+              mesh.file.c_str(), mesh.node_count(), mesh.tet_count(), 3 * mesh.node_count(),
+              q.volume, q.shortest_edge, q.longest_edge);
+  std::printf("  quality: mean %.3f, worst %.3f (tet %lld)\n", q.mean, q.smallest, q.worst_tag);
+  std::printf("ranks %d, tissue solver %s, set-up %.2f s\n", simulation_->space().comm().size(),
+              solver.c_str(), seconds);
+  for (const std::string& warning : scenario.warnings)
+    std::printf("warning: %s\n", warning.c_str());
+  std::fflush(stdout);
+}
+
+void Log::step(int number, const State& state, const StepReport& report)
+{
+  if (!speaks()) return;
+  if (lines_++ % 40 == 0)
+    std::printf("%6s %10s %10s %6s %6s %10s %12s %8s\n", "step", "time [s]", "depth [mm]", "rows",
+                "iters", "resid [m]", "base [N]", "ETA [s]");
+  double depth = 0.0, force = 0.0;
+  for (const NeedleReport& needle : report.needles) {
+    depth = std::max(depth, needle.depth);
+    force = std::max(force, needle.base.force.norm());
+  }
+  const double end = simulation_->scenario().time.end;
+  const double eta = state.t > 0.0 ? watch_.seconds() * (end - state.t) / state.t : std::nan("");
+  std::printf("%6d %10.4f %10.3f %6d %6d %10.2e %12.5f ", number, state.t, 1e3 * depth, report.rows,
+              report.iterations, report.residual, force);
+  if (std::isfinite(eta))
+    std::printf("%8.1f\n", eta);
+  else
+    std::printf("%8s\n", "-");
+  std::fflush(stdout);
+}
+
+void Log::note(const std::string& line) const
+{
+  if (!speaks()) return;
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+void Log::finish() const
+{
+  if (!speaks()) return;
+  std::printf("work:");
+  for (const auto& [name, count] : simulation_->ledger().entries())
+    if (count != 0)
+      std::printf(" %s %lld", std::string(name).c_str(), static_cast<long long>(count));
+  std::printf("\nfinished in %.1f s; results in %s\n", watch_.seconds(),
+              simulation_->scenario().output.folder.c_str());
+}
+
+}  // namespace trocar::driver

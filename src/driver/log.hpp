@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "core/stopwatch.hpp"
+#include "driver/simulation.hpp"
+
+namespace trocar::driver {
+
+/// Progress on rank 0's standard output: one line per step, silent with -quiet.
+class Log
+{
+ public:
+  explicit Log(const Simulation& simulation);
+
+  void set_up(double seconds) const;  ///< collective (solver description)
+  void step(int number, const State& state, const StepReport& report);
+  void note(const std::string& line) const;
+  void finish() const;
+
+ private:
+  bool speaks() const;
+
+  const Simulation* simulation_;
+  core::Stopwatch watch_;
+  int lines_ = 0;
+};
+
+}  // namespace trocar::driver

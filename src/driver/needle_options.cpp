@@ -1,0 +1,115 @@
+#include "driver/needle_options.hpp"
+
+#include <algorithm>
+
+#include "core/words.hpp"
+#include "driver/option_source.hpp"
+#include "insertion/deformed.hpp"
+
+namespace trocar::driver {
+namespace {
+
+needle::BaseMotion read_motion(core::Options& options, const std::string& name,
+                               const base::Comm& comm)
+{
+  needle::BaseMotion motion;
+  motion.entry = options.vector("needle_<needle>_entry", name);
+  const core::Vec3 direction = options.vector("needle_<needle>_direction", name);
+  if (!(direction.norm() > 0.0))
+    throw core::option_error("option -needle_direction of '" + name + "' has length 0");
+  motion.direction = direction.normalized();
+  motion.length = options.real("needle_<needle>_length", name);
+  motion.inserted = options.real("needle_<needle>_inserted", name);
+  motion.velocity = options.real("needle_<needle>_velocity", name);
+  motion.depth = options.real("needle_<needle>_depth", name);
+  motion.hold = options.real("needle_<needle>_hold", name);
+  motion.withdraw_velocity = options.real("needle_<needle>_withdraw_velocity", name);
+  const std::string file = options.text("needle_<needle>_trajectory", name);
+  if (!file.empty()) {
+    motion.trajectory = read_csv(file, comm);
+    needle::check_trajectory(motion);
+  }
+  return motion;
+}
+
+needle::NeedleSettings read_needle(core::Options& options, const std::string& name,
+                                   const base::Comm& comm)
+{
+  needle::NeedleSettings settings;
+  settings.name = name;
+  settings.model = options.text("needle_<needle>_model", name) == "rigid" ? needle::Model::rigid
+                                                                          : needle::Model::beam;
+  settings.motion = read_motion(options, name, comm);
+  settings.section.outer = options.real("needle_<needle>_radius", name);
+  settings.section.inner = options.real("needle_<needle>_inner_radius", name);
+  settings.section.young = options.real("needle_<needle>_young", name);
+  settings.section.poisson = options.real("needle_<needle>_poisson", name);
+  settings.density = options.real("needle_<needle>_density", name);
+  settings.elements = options.integer("needle_<needle>_elements", name);
+  settings.gravity = options.vector("gravity");
+  if (settings.section.inner >= settings.section.outer)
+    throw core::option_error("option -needle_inner_radius of '" + name +
+                             "' must be less than -needle_radius");
+  return settings;
+}
+
+/// The needle's own words must not look like another option of its area.
+void check_needle_names(const std::vector<std::string>& names)
+{
+  for (const std::string& name : names)
+    for (const char* area : {"inner", "withdraw"})
+      if (name == area)
+        throw core::option_error("option -needles: '" + name +
+                                 "' begins another option of the needle's area");
+}
+
+/// Refuses needles that can never do what they are told, before anything is computed.
+void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh,
+                  const mesh::Locator& locator, double end)
+{
+  const needle::BaseMotion& motion = settings.motion;
+  const fem::GlobalField undeformed{core::VecX::Zero(3 * mesh.node_count())};
+  const insertion::Deformed tissue(mesh, locator, undeformed);
+  const std::string who = "needle '" + settings.name + "': ";
+  const auto base_outside = [&](const core::Vec3& x, const std::string& when) {
+    if (locator.tet_at(x) >= 0)
+      throw core::data_error(who + "its base would enter the tissue " + when);
+  };
+  if (motion.trajectory) {
+    for (const auto& row : motion.trajectory->rows)
+      base_outside(core::Vec3(row[1], row[2], row[3]), "in " + motion.trajectory->file);
+    return;
+  }
+  if (std::max(motion.depth, motion.inserted) > motion.length)
+    throw core::data_error(who + "its base would enter the tissue: depth " +
+                           core::shown(std::max(motion.depth, motion.inserted)) +
+                           " m is more than its length");
+  base_outside(motion.at(0.0).x, "at the start");
+  const double reach =
+      std::max({motion.depth, motion.inserted, motion.velocity > 0.0 ? 1e-9 : 0.0});
+  const core::Vec3 far = motion.entry + (reach > 0.0 ? reach : 1e-9) * motion.direction;
+  const bool goes_in = motion.inserted > 0.0 || (motion.velocity > 0.0 && end > 0.0);
+  if (goes_in && !tissue.meets(motion.start().x, far))
+    throw core::data_error(who +
+                           "its path never meets the tissue (check -needle_entry and "
+                           "-needle_direction)");
+}
+
+}  // namespace
+
+std::vector<needle::NeedleSettings> read_needles(core::Options& options, const mesh::Mesh& mesh,
+                                                 double end, const base::Comm& comm)
+{
+  const std::vector<std::string> names = options.names("needles");
+  std::vector<needle::NeedleSettings> needles;
+  if (names.empty()) return needles;
+  check_needle_names(names);
+  const mesh::Locator locator(mesh);
+  for (const std::string& name : names) {
+    needles.push_back(read_needle(options, name, comm));
+    check_needle(needles.back(), mesh, locator, end);
+  }
+  return needles;
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "base/comm.hpp"
+#include "core/options.hpp"
+#include "mesh/mesh.hpp"
+#include "needle/needle.hpp"
+
+namespace trocar::driver {
+
+/// The needles of a scene with everything about them, checked against the undeformed mesh: a
+/// needle that can never do what it is told is a Failure (64 or 65). `end` is the end of the run
+/// [s]. Collective.
+std::vector<needle::NeedleSettings> read_needles(core::Options& options, const mesh::Mesh& mesh,
+                                                 double end, const base::Comm& comm);
+
+}  // namespace trocar::driver

@@ -1,0 +1,233 @@
+#include "driver/option_list.hpp"
+
+#include <limits>
+
+#include "core/words.hpp"
+
+namespace trocar::driver {
+namespace {
+
+using core::OptionSpec;
+using core::OptionType;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+OptionSpec positive(const char* name, const char* fallback, const char* unit, const char* help)
+{
+  return {name, OptionType::real, fallback, unit, help, 0.0, infinity, true, false};
+}
+OptionSpec not_negative(const char* name, const char* fallback, const char* unit, const char* help)
+{
+  return {name, OptionType::real, fallback, unit, help, 0.0, infinity, false, false};
+}
+OptionSpec poisson(const char* name, const char* fallback)
+{
+  return {name, OptionType::real, fallback, "1", "Poisson's ratio", -1.0, 0.5, true, true};
+}
+OptionSpec count(const char* name, const char* fallback, double low, const char* help)
+{
+  return {name, OptionType::integer, fallback, "1", help, low, 1e9, false, false};
+}
+OptionSpec word(const char* name, const char* fallback, const char* help)
+{
+  return {name, OptionType::text, fallback, "", help};
+}
+OptionSpec list(const char* name, const char* help)
+{
+  return {name, OptionType::names, "\"\"", "", help};
+}
+OptionSpec vector(const char* name, const char* fallback, const char* unit, const char* help)
+{
+  return {name, OptionType::vector, fallback, unit, help};
+}
+OptionSpec flag(const char* name, const char* help)
+{
+  return {name, OptionType::flag, "false", "", help};
+}
+OptionSpec choice(const char* name, const char* fallback, std::vector<std::string> choices,
+                  const char* help)
+{
+  OptionSpec spec{name, OptionType::choice, fallback, "", help};
+  spec.choices = std::move(choices);
+  return spec;
+}
+
+/// Declares an option and its override for one named thing: tissue_young, tissue_<volume>_young.
+void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec, const std::string& group)
+{
+  table.push_back(spec);
+  OptionSpec own = spec;
+  own.name.insert(own.name.find('_') + 1, group + "_");
+  own.help = spec.help + " of one " + group.substr(1, group.size() - 2);
+  table.push_back(own);
+}
+
+std::vector<OptionSpec> build_table()
+{
+  std::vector<OptionSpec> t{
+      word("mesh", "", "Gmsh file (2.2 or 4.1, ascii or binary)"),
+      positive("mesh_scale", "1", "1", "factor on the mesh's coordinates, 1e-3 for millimetres"),
+      choice("analysis", "dynamic", {"dynamic", "static"},
+             "backward Euler in time; or equilibrium: one, or a quasi-static path with time_end"),
+      positive("time_step", "0.01", "s", "step length h"),
+      not_negative("time_end", "0", "s", "end of the run, 0 = no steps (static: one equilibrium)"),
+      choice("time_initial", "unstressed", {"unstressed", "equilibrium"},
+             "start at rest without stress, or in balance with gravity and loads"),
+      count("time_newton_max", "1", 1,
+            "linearisations per dynamic step; 1 is the papers' single one, more iterate to 1e-8"),
+      vector("gravity", "0,0,0", "m/s^2", "acceleration of gravity"),
+      choice("tissue_model", "corotational", {"linear", "corotational"}, "tissue law"),
+      choice("tissue_mass", "consistent", {"consistent", "lumped"}, "tissue mass matrix"),
+  };
+  with_override(t, positive("tissue_young", "5000", "Pa", "Young's modulus"), "<volume>");
+  with_override(t, poisson("tissue_poisson", "0.45"), "<volume>");
+  with_override(t, positive("tissue_density", "1000", "kg/m^3", "mass density"), "<volume>");
+  with_override(t,
+                not_negative("tissue_rayleigh_mass", "0", "1/s", "alpha in B = alpha M + beta K"),
+                "<volume>");
+  with_override(t,
+                not_negative("tissue_rayleigh_stiffness", "0", "s", "beta in B = alpha M + beta K"),
+                "<volume>");
+  const std::vector<OptionSpec> boundary{
+      list("fix", "physical surfaces or points held still: NAME[:axes],… (axes such as xz)"),
+      vector("boundary_<surf>_displacement", "free,free,free", "m",
+             "prescribed displacement of a surface or point group, 'free' per axis"),
+      vector("boundary_<surf>_traction", "0,0,0", "Pa", "dead traction on a physical surface"),
+      word("boundary_<surf>_curve", "",
+           "CSV (columns time,factor) that scales displacement and traction of the group"),
+  };
+  t.insert(t.end(), boundary.begin(), boundary.end());
+
+  t.push_back(list("needles", "names of the needles"));
+  const std::vector<OptionSpec> needle{
+      choice("needle_model", "beam", {"rigid", "beam"}, "corotational Timoshenko beam, or rigid"),
+      vector("needle_entry", "0,0,0", "m", "where the needle's path enters the tissue"),
+      vector("needle_direction", "1,0,0", "1", "direction of insertion (made unit)"),
+      positive("needle_length", "0.12", "m", "length"),
+      positive("needle_radius", "0.0005", "m", "outer radius"),
+      not_negative("needle_inner_radius", "0", "m", "inner radius, 0 = solid"),
+      positive("needle_young", "2e11", "Pa", "Young's modulus"),
+      poisson("needle_poisson", "0.3"),
+      not_negative("needle_density", "0", "kg/m^3", "0 = neither weight nor inertia"),
+      count("needle_elements", "20", 1, "beam elements"),
+      not_negative("needle_velocity", "0", "m/s", "velocity of the advance"),
+      not_negative("needle_depth", "0", "m", "depth of the tip beyond the entry at which it ends"),
+      not_negative("needle_hold", "0", "s", "rest between advance and withdrawal"),
+      not_negative("needle_withdraw_velocity", "0", "m/s",
+                   "velocity of withdrawal, until the end of the run; 0 = never"),
+      not_negative("needle_inserted", "0", "m",
+                   "depth of the tip at the start, coupled on the undeformed mesh"),
+      word("needle_trajectory", "",
+           "CSV of the base: time,x,y,z[,dx,dy,dz[,roll]]; replaces velocity, depth, hold"),
+  };
+  for (const OptionSpec& spec : needle) with_override(t, spec, "<needle>");
+
+  t.push_back(choice("insertion_placement", "crossings", {"crossings", "spacing"},
+                     "coupling points where the path crosses faces, or at a spacing"));
+  t.push_back(positive("insertion_spacing", "0.005", "m", "distance for placement spacing"));
+  t.push_back({"insertion_merge", OptionType::real, "0.3", "1",
+               "crossings closer than this part of the local edge are merged, 0 = raw", 0.0, 1.0,
+               false, true});
+  with_override(t,
+                not_negative("insertion_friction_static", "0", "N/m",
+                             "shaft friction per length of a point at rest"),
+                "<volume>");
+  with_override(t,
+                not_negative("insertion_friction_dynamic", "0", "N/m",
+                             "shaft friction per length of a slipping point"),
+                "<volume>");
+  const std::vector<OptionSpec> rest{
+      choice("constraint_solver", "auto", {"auto", "pgs", "hybrid", "active_set", "interior_point"},
+             "solver of the dense constraint problem"),
+      positive("constraint_tolerance", "1e-9", "m", "stop at this residual (or step norm)"),
+      count("constraint_max_iterations", "1000", 1, "sweeps or factorisations"),
+      choice("constraint_norm", "residual", {"residual", "step"},
+             "what pgs and hybrid stop on: the true residual, or the paper's step norm"),
+      choice("compliance_provider", "auto", {"auto", "ksp", "ksp_block"},
+             "columns of the isolated compliance: one KSP solve each, or in blocks; auto takes "
+             "ksp when a tissue_ksp or tissue_pc option is given"),
+      word("output_dir", "results", "folder of the results"),
+      count("output_every", "1", 1, "field files every so many steps"),
+      [] {
+        OptionSpec spec =
+            list("output_fields", "nodal fields: displacement, velocity; \"\" = none");
+        spec.fallback = "displacement";
+        return spec;
+      }(),
+      flag("check", "stop after set-up: options, mesh, operator"),
+      flag("quiet", "no progress lines"),
+  };
+  t.insert(t.end(), rest.begin(), rest.end());
+  return t;
+}
+
+const char* type_name(OptionType type)
+{
+  switch (type) {
+    case OptionType::real:
+      return "real";
+    case OptionType::integer:
+      return "integer";
+    case OptionType::flag:
+      return "flag";
+    case OptionType::text:
+      return "text";
+    case OptionType::choice:
+      return "choice";
+    case OptionType::names:
+      return "names";
+    case OptionType::vector:
+      return "x,y,z";
+  }
+  return "";
+}
+
+/// "range or choices" as one cell.
+std::string limits(const OptionSpec& spec)
+{
+  return spec.choices.empty() ? core::range_text(spec) : core::join(spec.choices);
+}
+
+}  // namespace
+
+const std::vector<OptionSpec>& option_table()
+{
+  static const std::vector<OptionSpec> table = build_table();
+  return table;
+}
+
+void print_help(std::ostream& out)
+{
+  out << "usage: mpirun -n RANKS trocar -options_file FILE.opts [-option value …]\n"
+         "       trocar -help | -help_markdown | -version\n\n"
+         "Options (SI units). <volume>, <surf>, <needle> stand for names of yours; an option with\n"
+         "such a name overrides the one without. PETSc's own options work too: -tissue_ksp_*,\n"
+         "-tissue_pc_*, -tissue_mat_mumps_*, -log_view, …\n\n";
+  for (const OptionSpec& spec : option_table()) {
+    out << "  -" << spec.name << " <" << type_name(spec.type) << ">  default "
+        << (spec.fallback.empty() ? "\"\"" : spec.fallback);
+    if (!spec.unit.empty() && spec.unit != "1") out << " [" << spec.unit << "]";
+    const std::string limit = limits(spec);
+    if (!limit.empty()) out << "  {" << limit << "}";
+    out << "\n      " << spec.help << "\n";
+  }
+}
+
+void print_markdown(std::ostream& out)
+{
+  out << "# Options\n\n"
+         "Generated by `build/trocar -help_markdown > docs/options.md`; a test keeps it current.\n"
+         "All values are SI. `<volume>`, `<surf>` and `<needle>` stand for names of yours; an\n"
+         "option with such a name overrides the one without. Order of precedence: command line,\n"
+         "`PETSC_OPTIONS`, options file. Unknown options end the run with code 64.\n\n"
+         "The tissue's linear solver takes PETSc's options with the prefix `-tissue_`:\n"
+         "`-tissue_ksp_type cg -tissue_pc_type gamg`, `-tissue_mat_mumps_icntl_14 80`, …\n\n"
+         "| option | type | default | unit | range or choices | meaning |\n"
+         "|---|---|---|---|---|---|\n";
+  for (const OptionSpec& spec : option_table())
+    out << "| `-" << spec.name << "` | " << type_name(spec.type) << " | `"
+        << (spec.fallback.empty() ? "\"\"" : spec.fallback) << "` | " << spec.unit << " | "
+        << limits(spec) << " | " << spec.help << " |\n";
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,164 @@
+#include "driver/program.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <thread>
+
+#include "base/petsc.hpp"
+#include "core/stopwatch.hpp"
+#include "core/words.hpp"
+#include "driver/log.hpp"
+#include "driver/option_list.hpp"
+#include "driver/recorder.hpp"
+
+namespace trocar::driver {
+namespace {
+
+constexpr int most_halvings = 8;
+
+/// Takes `old` to the end of a step, in halves when it is rejected. Every accepted part is
+/// recorded. Collective.
+class Clock
+{
+ public:
+  Clock(Simulation& simulation, Recorder& recorder, Log& log)
+      : simulation_(simulation), recorder_(recorder), log_(log)
+  {
+  }
+
+  void run(State state)
+  {
+    const TimeSettings& time = simulation_.scenario().time;
+    const auto steps = static_cast<long>(std::ceil(time.end / time.step - 1e-6));
+    for (long n = 1; n <= steps; ++n) {
+      // Bit-equal h for all steps but a shorter last one: linear tissue then factors once.
+      const double left = time.end - static_cast<double>(n - 1) * time.step;
+      const bool shorter = n == steps && left < time.step * (1.0 - 1e-6);
+      const double h = shorter ? left : time.step;
+      const double t = shorter ? time.end : static_cast<double>(n) * time.step;
+      const bool output =
+          n == steps || n % static_cast<long>(simulation_.scenario().output.every) == 0;
+      state = advance(std::move(state), {t, h, time.analysis == Analysis::equilibrium}, 0, output);
+    }
+  }
+
+ private:
+  State advance(State old, const core::TimeStep& now, int halvings, bool output)
+  {
+    const core::Stopwatch watch;
+    StepResult result =
+        now.is_static ? simulation_.equilibrium(old, now) : simulation_.step(old, now);
+    if (result.state) {
+      ++simulation_.ledger().steps;
+      ++accepted_;
+      const double seconds = simulation_.space().comm().max(watch.seconds());
+      recorder_.record(simulation_, *result.state, result.report, accepted_, seconds, output);
+      log_.step(accepted_, *result.state, result.report);
+      return std::move(*result.state);
+    }
+    ++simulation_.ledger().rejected_steps;
+    log_.note("step to t = " + core::shown(now.t) + " s rejected: " + result.why);
+    if (halvings == most_halvings)
+      throw core::solver_error("at t = " + core::shown(old.t) + " s: " + result.why +
+                               " (the step was halved " + std::to_string(halvings) + " times)");
+    core::TimeStep half = now;
+    half.h = 0.5 * now.h;
+    half.t = now.t - half.h;
+    old = advance(std::move(old), half, halvings + 1, false);
+    half.t = now.t;
+    return advance(std::move(old), half, halvings + 1, output);
+  }
+
+  Simulation& simulation_;
+  Recorder& recorder_;
+  Log& log_;
+  int accepted_ = 0;
+};
+
+void run_scene(int argc, char** argv, const base::Comm& comm)
+{
+  const Invocation invocation = read_invocation(argc, argv, comm);
+  const base::PetscSession petsc(&argc, &argv);
+  core::Options options(option_table(), take_options(invocation));
+  const Scenario scenario = read_scenario(options, comm);
+  const core::Stopwatch watch;
+  Simulation simulation(scenario, comm);
+  simulation.prepare();
+  refuse_unused();
+  Log log(simulation);
+  log.set_up(watch.seconds());
+  if (scenario.check_only) {
+    log.note("check passed: nothing was run");
+    return;
+  }
+  Recorder recorder(simulation, invocation, options.resolved());
+  StepResult start = simulation.initial_state();
+  if (!start.state) throw core::solver_error("at the start: " + start.why);
+  recorder.record(simulation, *start.state, start.report, 0, 0.0, true);
+  log.step(0, *start.state, start.report);
+  Clock(simulation, recorder, log).run(std::move(*start.state));
+  recorder.close(simulation);
+  log.finish();
+}
+
+/// True when every rank comes here within two seconds: then the failure was agreed and all may
+/// leave in order. Else somebody waits in a collective call that will never complete.
+bool all_ranks_failed(MPI_Comm comm)
+{
+  MPI_Request request = MPI_REQUEST_NULL;
+  if (MPI_Ibarrier(comm, &request) != MPI_SUCCESS) return false;
+  for (int tenth = 0; tenth < 200; ++tenth) {
+    int done = 0;
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+int fail(const base::Comm& comm, MPI_Comm alarm, int code, const char* line)
+{
+  const bool agreed = all_ranks_failed(alarm);
+  if (!agreed || comm.root()) std::fprintf(stderr, "trocar: error: %s\n", line);
+  if (!agreed) MPI_Abort(comm.get(), code);
+  return code;
+}
+
+}  // namespace
+
+bool answer_questions(int argc, char** argv)
+{
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "-help" || word == "--help" || word == "-h")
+      print_help(std::cout);
+    else if (word == "-help_markdown")
+      print_markdown(std::cout);
+    else if (word == "-version" || word == "--version")
+      std::cout << build_description() << "\n";
+    else
+      continue;
+    return true;
+  }
+  return false;
+}
+
+int run_program(int argc, char** argv, MPI_Comm world)
+{
+  MPI_Comm own = MPI_COMM_NULL, alarm = MPI_COMM_NULL;
+  MPI_Comm_dup(world, &own);
+  MPI_Comm_dup(world, &alarm);
+  const base::Comm comm(own);
+  try {
+    run_scene(argc, argv, comm);
+    return 0;
+  } catch (const core::Failure& failure) {
+    return fail(comm, alarm, static_cast<int>(failure.code()), failure.what());
+  } catch (const std::exception& error) {
+    return fail(comm, alarm, static_cast<int>(core::ExitCode::internal), error.what());
+  }
+}
+
+}  // namespace trocar::driver

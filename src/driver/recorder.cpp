@@ -1,0 +1,236 @@
+#include "driver/recorder.hpp"
+
+#include <gmsh.h>
+#include <hdf5.h>
+
+#include <ctime>
+
+#include "base/petsc.hpp"
+#include "core/words.hpp"
+#include "driver/build_info.hpp"
+
+namespace trocar::driver {
+namespace {
+
+std::string utc_now()
+{
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  return text;
+}
+
+std::string petsc_version()
+{
+  return std::to_string(PETSC_VERSION_MAJOR) + "." + std::to_string(PETSC_VERSION_MINOR) + "." +
+         std::to_string(PETSC_VERSION_SUBMINOR);
+}
+
+std::string mpi_version()
+{
+  char text[MPI_MAX_LIBRARY_VERSION_STRING];
+  int length = 0;
+  MPI_Get_library_version(text, &length);
+  return {text, static_cast<std::size_t>(length)};
+}
+
+io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
+                          const std::vector<core::ResolvedOption>& options)
+{
+  io::Provenance p;
+  p.texts = {{"program", "trocar"},
+             {"version", build_info::version},
+             {"git_commit", build_info::git_commit},
+             {"build_type", build_info::build_type},
+             {"compiler", build_info::compiler},
+             {"created_utc", utc_now()},
+             {"command_line", core::join(invocation.arguments, " ")},
+             {"mpi_ranks", std::to_string(simulation.space().comm().size())},
+             {"petsc_version", petsc_version()},
+             {"hdf5_version", H5_VERS_INFO},
+             {"gmsh_version", GMSH_API_VERSION},
+             {"mpi_version", mpi_version()},
+             {"options_file_name", invocation.options_file},
+             {"options_file", invocation.options_file_text},
+             {"mesh_file", simulation.scenario().mesh.file},
+             {"mesh_hash_fnv1a", simulation.scenario().mesh.hash}};
+  std::vector<std::string> names, values, units, sources;
+  for (const core::ResolvedOption& option : options) {
+    names.push_back(option.name);
+    values.push_back(option.value);
+    units.push_back(option.unit);
+    sources.push_back(option.source);
+  }
+  p.tables = {{"options/name", names},
+              {"options/value", values},
+              {"options/unit", units},
+              {"options/source", sources}};
+  return p;
+}
+
+std::vector<io::Series> series_of(const Scenario& scenario)
+{
+  std::vector<io::Series> series{{"time", 0, "s"}};
+  for (const auto& needle : scenario.needles) {
+    const std::string at = "needle/" + needle.name + "/";
+    series.insert(series.end(), {{at + "tip", 3, "m"},
+                                 {at + "depth", 0, "m"},
+                                 {at + "base_force", 3, "N"},
+                                 {at + "base_moment", 3, "N m"},
+                                 {at + "shaft_friction", 0, "N"},
+                                 {at + "tip_force", 0, "N"},
+                                 {at + "friction_work", 0, "J"},
+                                 {at + "points", 0, "1"},
+                                 {at + "slipping", 0, "1"}});
+  }
+  series.insert(series.end(), {{"constraint/rows", 0, "1"},
+                               {"constraint/rank", 0, "1"},
+                               {"constraint/iterations", 0, "1"},
+                               {"constraint/residual", 0, "m"},
+                               {"compliance/probes", 0, "1"},
+                               {"compliance/new_probes", 0, "1"},
+                               {"compliance/reused_probes", 0, "1"},
+                               {"compliance/build_seconds", 0, "s"},
+                               {"time_linearisations", 0, "1"},
+                               {"step_seconds", 0, "s"}});
+  return series;
+}
+
+std::vector<double> components(const Vec3& v)
+{
+  return {v.x(), v.y(), v.z()};
+}
+
+std::vector<std::vector<double>> history_row(const Simulation& simulation, const State& state,
+                                             const StepReport& report, double build_seconds,
+                                             double seconds)
+{
+  std::vector<std::vector<double>> row{{state.t}};
+  for (std::size_t i = 0; i < simulation.needles().size(); ++i) {
+    const NeedleReport& needle = report.needles[i];
+    const auto& points = state.insertions[i].points;
+    const auto slipping =
+        std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.stuck; });
+    // No law acts on the tip yet, so its force is what it is: zero.
+    row.insert(row.end(), {components(needle.tip),
+                           {needle.depth},
+                           components(needle.base.force),
+                           components(needle.base.moment),
+                           {needle.coupling.shaft_friction},
+                           {0.0},
+                           {needle.coupling.friction_work},
+                           {static_cast<double>(points.size())},
+                           {static_cast<double>(slipping)}});
+  }
+  for (double value :
+       {static_cast<double>(report.rows), static_cast<double>(report.rank),
+        static_cast<double>(report.iterations), report.residual,
+        static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
+        static_cast<double>(report.compliance.reused), build_seconds,
+        static_cast<double>(report.linearisations), seconds})
+    row.push_back({value});
+  return row;
+}
+
+io::Field nodal_field(const std::string& name, const std::string& units,
+                      const fem::GlobalField& field)
+{
+  return {name, 3,    units, {field.value.data(), field.value.data() + field.value.size()},
+          true, false};
+}
+
+/// Coupling points of all needles, one row each; ids are needle · 10⁶ + site.
+std::vector<io::Field> coupling_fields(const Simulation& simulation, const State& state,
+                                       const fem::GlobalField& u)
+{
+  io::Field id{"/coupling/id", 0, "1", {}, false, true};
+  io::Field position{"/coupling/position", 3, "m", {}, false, false};
+  io::Field lambda{"/coupling/lambda", 3, "N", {}, false, false};
+  io::Field stuck{"/coupling/state", 0, "1", {}, false, true};
+  io::Field tributary{"/coupling/tributary", 0, "m", {}, false, false};
+  for (std::size_t n = 0; n < state.insertions.size(); ++n) {
+    const auto& insertion = state.insertions[n];
+    const core::VecX lengths = simulation.tributary(insertion).rowwise().sum();
+    for (std::size_t k = 0; k < insertion.points.size(); ++k) {
+      const auto& point = insertion.points[k];
+      const auto& anchor = insertion.path.sites[static_cast<std::size_t>(point.site)].anchor;
+      Vec3 x = Vec3::Zero();
+      for (std::size_t a = 0; a < 4; ++a)
+        x += anchor.weight[static_cast<Eigen::Index>(a)] *
+             (simulation.scenario().mesh.x[static_cast<std::size_t>(anchor.node[a])] +
+              u.node(anchor.node[a]));
+      id.values.push_back(1e6 * static_cast<double>(n) + point.site);
+      position.values.insert(position.values.end(), x.data(), x.data() + 3);
+      lambda.values.insert(lambda.values.end(), point.lambda.data(), point.lambda.data() + 3);
+      stuck.values.push_back(point.stuck ? 0.0 : 1.0);
+      tributary.values.push_back(lengths[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  if (id.values.empty()) return {};
+  return {id, position, lambda, stuck, tributary};
+}
+
+/// Nodes of every needle's axis, so that a picture needs no model of the needle.
+std::vector<io::Field> shaft_fields(const Simulation& simulation, const State& state)
+{
+  std::vector<io::Field> fields;
+  for (std::size_t n = 0; n < state.needles.size(); ++n) {
+    io::Field axis{
+        "/needle/" + simulation.scenario().needles[n].name + "/axis", 3, "m", {}, false, false};
+    for (const Vec3& x : state.needles[n].shaft.x)
+      axis.values.insert(axis.values.end(), x.data(), x.data() + 3);
+    fields.push_back(std::move(axis));
+  }
+  return fields;
+}
+
+}  // namespace
+
+std::string build_description()
+{
+  return std::string("trocar ") + build_info::version + " (" + build_info::git_commit + ", " +
+         build_info::build_type + ", " + build_info::compiler + "), PETSc " + petsc_version();
+}
+
+Recorder::Recorder(const Simulation& simulation, const Invocation& invocation,
+                   const std::vector<core::ResolvedOption>& options)
+{
+  base::on_root(simulation.space().comm(), [&] {
+    const Scenario& scenario = simulation.scenario();
+    results_.emplace(scenario.output.folder, scenario.mesh,
+                     provenance(simulation, invocation, options), series_of(scenario));
+  });
+}
+
+void Recorder::record(const Simulation& simulation, const State& state, const StepReport& report,
+                      int step, double seconds, bool with_fields)
+{
+  const fem::Space& space = simulation.space();
+  const OutputSettings& output = simulation.scenario().output;
+  const double build_seconds = space.comm().max(report.compliance.seconds);
+  std::vector<io::Field> fields;
+  // Without output fields nothing is gathered and no field file is made.
+  if (with_fields && (output.displacement || output.velocity)) {
+    const fem::GlobalField u = space.gather(state.tissue.u);
+    if (output.displacement) fields.push_back(nodal_field("/displacement", "m", u));
+    if (output.velocity)
+      fields.push_back(nodal_field("/velocity", "m/s", space.gather(state.tissue.v)));
+    for (auto& field : coupling_fields(simulation, state, u)) fields.push_back(std::move(field));
+    for (auto& field : shaft_fields(simulation, state)) fields.push_back(std::move(field));
+  }
+  base::on_root(space.comm(), [&] {
+    results_->append_history(history_row(simulation, state, report, build_seconds, seconds),
+                             simulation.ledger());
+    if (fields.empty()) return;
+    std::vector<std::string> notes;
+    if (report.nonunique) notes.emplace_back("lambda_nonunique");
+    results_->write_fields(step, state.t, fields, notes);
+  });
+}
+
+void Recorder::close(const Simulation& simulation)
+{
+  base::on_root(simulation.space().comm(), [&] { results_->close(); });
+}
+
+}  // namespace trocar::driver

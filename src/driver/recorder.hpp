@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "driver/option_source.hpp"
+#include "driver/simulation.hpp"
+#include "io/results.hpp"
+
+namespace trocar::driver {
+
+/// Names what a run leaves behind and hands it to `io`, which knows fields but no physics.
+class Recorder
+{
+ public:
+  /// Makes the result folder on rank 0; Failure (74) on every rank. Collective.
+  Recorder(const Simulation& simulation, const Invocation& invocation,
+           const std::vector<core::ResolvedOption>& options);
+
+  /// One history row, and a field file when `with_fields`. `step` counts accepted steps.
+  /// Collective.
+  void record(const Simulation& simulation, const State& state, const StepReport& report, int step,
+              double seconds, bool with_fields);
+
+  /// Collective.
+  void close(const Simulation& simulation);
+
+ private:
+  std::optional<io::Results> results_;  ///< on rank 0 only
+};
+
+/// Versions, commit and build of this program, one line.
+std::string build_description();
+
+}  // namespace trocar::driver

@@ -1,0 +1,192 @@
+#include "driver/scenario.hpp"
+
+#include <algorithm>
+
+#include "core/csv.hpp"
+#include "core/words.hpp"
+#include "driver/needle_options.hpp"
+#include "driver/option_source.hpp"
+#include "io/gmsh_reader.hpp"
+
+namespace trocar::driver {
+namespace {
+
+using core::Options;
+using core::Vec3;
+
+TimeSettings read_time(Options& options)
+{
+  TimeSettings time;
+  time.analysis = options.text("analysis") == "static" ? Analysis::equilibrium : Analysis::dynamic;
+  time.step = options.real("time_step");
+  time.end = options.real("time_end");
+  time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
+  time.newton_max = options.integer("time_newton_max");
+  return time;
+}
+
+std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh& mesh)
+{
+  std::vector<tissue::Material> materials;
+  for (const std::string& volume : mesh.volumes) {
+    tissue::Material m;
+    m.young = options.real("tissue_<volume>_young", volume);
+    m.poisson = options.real("tissue_<volume>_poisson", volume);
+    m.density = options.real("tissue_<volume>_density", volume);
+    m.rayleigh_mass = options.real("tissue_<volume>_rayleigh_mass", volume);
+    m.rayleigh_stiffness = options.real("tissue_<volume>_rayleigh_stiffness", volume);
+    materials.push_back(m);
+  }
+  return materials;
+}
+
+std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
+{
+  std::vector<tissue::BoundaryConditions::Fixed> fixed;
+  for (const std::string& entry : options.names("fix")) {
+    const auto colon = entry.find(':');
+    tissue::BoundaryConditions::Fixed one{entry.substr(0, colon), 7};
+    if (colon != std::string::npos) {
+      one.axes = 0;
+      for (char axis : entry.substr(colon + 1)) {
+        if (axis < 'x' || axis > 'z')
+          throw core::option_error("option -fix: '" + entry + "': axes are letters of xyz");
+        one.axes |= 1U << (axis - 'x');
+      }
+    }
+    fixed.push_back(one);
+  }
+  return fixed;
+}
+
+tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mesh,
+                                         const base::Comm& comm)
+{
+  tissue::BoundaryConditions boundary;
+  boundary.gravity = options.vector("gravity");
+  boundary.fixed = read_fixed(options);
+  std::set<std::string> groups = options.groups_given("boundary_<surf>_displacement");
+  for (const char* pattern : {"boundary_<surf>_traction", "boundary_<surf>_curve"})
+    for (const std::string& group : options.groups_given(pattern)) groups.insert(group);
+  for (const std::string& group : groups) {
+    const bool moves = options.given("boundary_<surf>_displacement", group);
+    const bool pulls = options.given("boundary_<surf>_traction", group);
+    const std::string file = options.text("boundary_<surf>_curve", group);
+    std::optional<core::Csv> curve;
+    if (!file.empty()) {
+      if (!moves && !pulls)
+        throw core::option_error("option -boundary_" + group +
+                                 "_curve: the group has neither displacement nor traction");
+      curve = read_csv(file, comm);
+      core::require_time_column(*curve);
+      if (curve->columns.size() != 2)
+        throw core::data_error(file + ": columns must be time,factor");
+    }
+    if (moves) {
+      mesh::group_nodes(mesh, group);
+      boundary.displacements.push_back(
+          {group, options.vector_or_free("boundary_<surf>_displacement", group), curve});
+    }
+    if (pulls) {
+      mesh::surface_group(mesh, group);
+      boundary.tractions.push_back(
+          {group, options.vector("boundary_<surf>_traction", group), curve});
+    }
+  }
+  for (const auto& fixed : boundary.fixed) mesh::group_nodes(mesh, fixed.group);
+  return boundary;
+}
+
+tissue::TissueSettings read_tissue(Options& options, const mesh::Mesh& mesh, const base::Comm& comm)
+{
+  tissue::TissueSettings settings;
+  settings.model = options.text("tissue_model") == "linear" ? tissue::Model::linear
+                                                            : tissue::Model::corotational;
+  settings.mass =
+      options.text("tissue_mass") == "lumped" ? tissue::Mass::lumped : tissue::Mass::consistent;
+  settings.materials = read_materials(options, mesh);
+  settings.boundary = read_boundary(options, mesh, comm);
+  return settings;
+}
+
+insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& mesh)
+{
+  insertion::InsertionSettings settings;
+  settings.placement.placement = options.text("insertion_placement") == "spacing"
+                                     ? insertion::Placement::spacing
+                                     : insertion::Placement::crossings;
+  settings.placement.spacing = options.real("insertion_spacing");
+  settings.placement.merge = options.real("insertion_merge");
+  for (const std::string& volume : mesh.volumes)
+    settings.friction.push_back({options.real("insertion_<volume>_friction_static", volume),
+                                 options.real("insertion_<volume>_friction_dynamic", volume)});
+  settings.stick_tolerance = options.real("constraint_tolerance");
+  return settings;
+}
+
+law::Settings read_laws(Options& options)
+{
+  const std::map<std::string, law::Method> methods{{"auto", law::Method::automatic},
+                                                   {"pgs", law::Method::pgs},
+                                                   {"hybrid", law::Method::hybrid},
+                                                   {"active_set", law::Method::active_set},
+                                                   {"interior_point", law::Method::interior_point}};
+  law::Settings laws;
+  laws.method = methods.at(options.text("constraint_solver"));
+  laws.norm = options.text("constraint_norm") == "step" ? law::Norm::step : law::Norm::residual;
+  laws.tolerance = options.real("constraint_tolerance");
+  laws.max_iterations = options.integer("constraint_max_iterations");
+  return laws;
+}
+
+OutputSettings read_output(Options& options)
+{
+  OutputSettings output;
+  output.folder = options.text("output_dir");
+  output.every = options.integer("output_every");
+  output.quiet = options.flag("quiet");
+  output.displacement = false;
+  const std::vector<std::string> known{"displacement", "velocity"};
+  for (const std::string& field : options.names("output_fields")) {
+    if (std::find(known.begin(), known.end(), field) == known.end())
+      throw core::option_error("option -output_fields: no field '" + field + "'" +
+                               core::did_you_mean(field, known));
+    (field == "displacement" ? output.displacement : output.velocity) = true;
+  }
+  return output;
+}
+
+void add_warnings(Scenario& scenario)
+{
+  for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
+    if (scenario.tissue.materials[i].poisson > 0.45)
+      scenario.warnings.push_back("volume '" + scenario.mesh.volumes[i] +
+                                  "': linear tets lock above a Poisson's ratio of about 0.4; "
+                                  "displacements are too small and pressures wrong");
+}
+
+}  // namespace
+
+Scenario read_scenario(Options& options, const base::Comm& comm)
+{
+  Scenario scenario;
+  scenario.time = read_time(options);
+  scenario.laws = read_laws(options);
+  scenario.output = read_output(options);
+  scenario.check_only = options.flag("check");
+  const std::string file = options.text("mesh");
+  if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");
+  scenario.mesh = io::read_gmsh(file, options.real("mesh_scale"), comm);
+  scenario.tissue = read_tissue(options, scenario.mesh, comm);
+  scenario.insertion = read_insertion(options, scenario.mesh);
+  scenario.needles = read_needles(options, scenario.mesh, scenario.time.end, comm);
+  const std::string provider = options.text("compliance_provider");
+  const bool one_by_one = provider == "ksp" || (provider == "auto" && tissue_solver_given());
+  scenario.tissue.columns =
+      one_by_one ? solve::ColumnSolver::one_by_one : solve::ColumnSolver::blocked;
+  options.refuse_unread();
+  add_warnings(scenario);
+  return scenario;
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/comm.hpp"
+#include "core/options.hpp"
+#include "insertion/insertion.hpp"
+#include "law/problem.hpp"
+#include "mesh/mesh.hpp"
+#include "needle/needle.hpp"
+#include "tissue/tissue.hpp"
+
+namespace trocar::driver {
+
+enum class Analysis { dynamic, equilibrium };
+
+struct TimeSettings
+{
+  Analysis analysis = Analysis::dynamic;
+  double step = 0.01;  ///< h [s]
+  double end = 0.0;    ///< T [s]
+  bool start_in_equilibrium = false;
+  int newton_max = 1;  ///< linearisations per dynamic step
+};
+
+struct OutputSettings
+{
+  std::string folder;
+  int every = 1;
+  bool displacement = true;
+  bool velocity = false;
+  bool quiet = false;
+};
+
+/// Everything a run is told, in SI units. Made once from the options; nothing reads an option
+/// later.
+struct Scenario
+{
+  mesh::Mesh mesh;
+  TimeSettings time;
+  tissue::TissueSettings tissue;
+  std::vector<needle::NeedleSettings> needles;
+  insertion::InsertionSettings insertion;
+  law::Settings laws;
+  OutputSettings output;
+  bool check_only = false;
+  std::vector<std::string> warnings;  ///< for the log
+};
+
+/// Reads and checks all options and the files they name. Throws Failure (64 or 65) on every rank.
+/// Collective.
+Scenario read_scenario(core::Options& options, const base::Comm& comm);
+
+}  // namespace trocar::driver

@@ -1,0 +1,233 @@
+#include "driver/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/words.hpp"
+#include "law/solve.hpp"
+
+namespace trocar::driver {
+namespace {
+
+constexpr double balance_tolerance = 1e-8;  ///< ‖r‖ / ‖forces‖ of an iterated step
+constexpr int most_linearisations = 50;     ///< of one static equilibrium
+constexpr int most_load_steps = 64;
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
+    : scenario_(scenario),
+      space_(scenario.mesh, mesh::partition_nodes(scenario.mesh, comm), comm),
+      tissue_(scenario.mesh, space_, scenario.tissue, ledger_)
+{
+  if (scenario.time.analysis == Analysis::equilibrium || scenario.time.start_in_equilibrium)
+    tissue::require_supports(tissue_.fixed(), scenario.mesh);
+  for (const needle::NeedleSettings& settings : scenario.needles) needles_.emplace_back(settings);
+  if (needles_.empty()) return;
+  locator_.emplace(scenario.mesh);
+  insertion_.emplace(scenario.mesh, *locator_, scenario.insertion);
+}
+
+void Simulation::prepare()
+{
+  const bool is_static =
+      scenario_.time.analysis == Analysis::equilibrium || scenario_.time.start_in_equilibrium;
+  tissue_.prepare({0.0, scenario_.time.step, is_static});
+}
+
+StepResult Simulation::initial_state()
+{
+  State state;
+  state.tissue = tissue_.at_rest();
+  for (const needle::Needle& needle : needles_) {
+    state.needles.push_back(needle.initial());
+    state.insertions.push_back(insertion_->start(needle));
+  }
+  if (scenario_.time.start_in_equilibrium || scenario_.time.analysis == Analysis::equilibrium)
+    return equilibrium(state, {0.0, scenario_.time.step, true});
+  StepResult result{state, {}, {}};
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    result.report.needles.push_back(
+        {state.needles[i].shaft.tip(), insertion_->depth(state.insertions[i]), {}, {}});
+  return result;
+}
+
+StepResult Simulation::equilibrium(const State& old, const core::TimeStep& now)
+{
+  StepResult result;
+  for (int parts = 1; parts <= most_load_steps; parts *= 2) {
+    State from = old;
+    for (int part = 1; part <= parts; ++part) {
+      core::TimeStep share = now;
+      share.load = static_cast<double>(part) / parts;
+      result = step(from, share);
+      if (!result.state) break;
+      from = *result.state;
+    }
+    if (result.state) return result;
+  }
+  return result;
+}
+
+// One step of both papers: every body moves freely, the rows that couple them are solved in one
+// small dense problem, and the bodies are corrected by it.
+StepResult Simulation::step(const State& old, const core::TimeStep& now)
+{
+  State next = old;
+  next.t = now.t;
+  move_needles(old, next);  // 1 events, decided before and frozen during the solve
+  StepReport report;
+  const int most = now.is_static ? most_linearisations : scenario_.time.newton_max;
+  double last_residual = std::numeric_limits<double>::infinity();
+  for (int iteration = 1;; ++iteration) {
+    const State iterate = next;
+    const tissue::FreeMotion tissue =
+        tissue_.free_motion(old.tissue, next.tissue.u, now);  // 2 each body alone
+    if (tissue.trouble) return StepResult::rejected(*tissue.trouble);
+    std::vector<needle::Linearised> needles;
+    for (std::size_t i = 0; i < needles_.size(); ++i)
+      needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
+
+    const Rows rows = coupling_rows(next);  // 3 rows H, gaps, laws
+    Correction correction;
+    if (!rows.set.empty()) {  // 4 W and g, then the laws
+      const auto trouble = solve_constraints(rows, tissue.increment, needles, correction, report);
+      if (trouble) return StepResult::rejected(*trouble);
+    }
+    correct(old, now, tissue.increment, needles, correction, next, report);  // 5
+    report.linearisations = iteration;
+    double residual = 0.0;
+    const bool done = most == 1 || balanced(old, next, now, correction, residual);
+    if (done) {
+      accept(rows, correction, next, report);
+      return {std::move(next), std::move(report), {}};
+    }
+    if (iteration == most || !std::isfinite(residual))
+      return StepResult::rejected("equilibrium not reached in " + std::to_string(iteration) +
+                                  " linearisations (relative residual " + core::shown(residual) +
+                                  ")");
+    if (rows.set.empty() && residual > last_residual)  // overshoot: half the increment
+      next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.tissue.u.value);
+    last_residual = residual;
+  }
+}
+
+void Simulation::move_needles(const State& old, State& next) const
+{
+  if (needles_.empty()) return;
+  const fem::GlobalField u = space_.gather(old.tissue.u);
+  const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    next.needles[i] = needles_[i].predict(old.needles[i], next.t);
+    if (next.t > 0.0)
+      next.insertions[i] = insertion_->advance(old.insertions[i], next.needles[i].shaft, tissue);
+  }
+}
+
+Simulation::Rows Simulation::coupling_rows(State& next) const
+{
+  Rows rows;
+  const bool coupled = std::any_of(next.insertions.begin(), next.insertions.end(),
+                                   [](const auto& one) { return !one.points.empty(); });
+  if (!coupled) return rows;
+  const fem::GlobalField u = space_.gather(next.tissue.u);
+  const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    rows.of_needle.push_back(insertion_->add_rows(next.insertions[i], next.needles[i].shaft, tissue,
+                                                  static_cast<int>(i), rows.set));
+  return rows;
+}
+
+std::optional<std::string> Simulation::solve_constraints(
+    const Rows& rows, const fem::OwnedField& free_increment,
+    const std::vector<needle::Linearised>& needles, Correction& correction, StepReport& report)
+{
+  std::vector<constraint::SmallBody> bodies;
+  for (const needle::Linearised& needle : needles)
+    bodies.push_back({needle.held, needle.factor, needle.free_increment});
+  const constraint::Reduced reduced =
+      constraint::reduce(rows.set, space_, free_increment, tissue_.compliance(), bodies);
+  correction.lambda = law::solve(reduced.problem, scenario_.laws);
+  ++ledger_.constraint_solves;
+  if (!correction.lambda.converged) return correction.lambda.why;
+
+  correction.push = constraint::tissue_forces(rows.set, correction.lambda.lambda, space_);
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    correction.levers.push_back(constraint::body_forces(rows.set, correction.lambda.lambda,
+                                                        static_cast<int>(i), needles_[i].dofs()));
+  report.rows = rows.set.size();
+  report.rank = correction.lambda.rank;
+  report.nonunique = correction.lambda.nonunique;
+  report.iterations += correction.lambda.iterations;
+  report.residual = std::max(report.residual, correction.lambda.residual);
+  report.compliance.probes = reduced.compliance.probes;
+  report.compliance.built += reduced.compliance.built;
+  report.compliance.reused += reduced.compliance.reused;
+  report.compliance.seconds += reduced.compliance.seconds;
+  return std::nullopt;
+}
+
+void Simulation::correct(const State& old, const core::TimeStep& now,
+                         const fem::OwnedField& free_increment,
+                         const std::vector<needle::Linearised>& needles,
+                         const Correction& correction, State& next, StepReport& report)
+{
+  const bool pushed = correction.lambda.lambda.size() > 0;
+  next.tissue.u.value += free_increment.value;
+  if (pushed) next.tissue.u.value += tissue_.respond(correction.push).value;
+  next.tissue.v.value = now.inverse() * (next.tissue.u.value - old.tissue.u.value);
+  report.needles.assign(needles_.size(), {});
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    const core::VecX lever =
+        pushed ? correction.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();
+    report.needles[i].base = needles_[i].base_wrench(next.needles[i], needles[i], lever);
+    next.needles[i] = needles_[i].correct(old.needles[i], next.needles[i], needles[i], lever, now);
+  }
+}
+
+bool Simulation::balanced(const State& old, const State& next, const core::TimeStep& now,
+                          const Correction& correction, double& residual) const
+{
+  double scale = 0.0;
+  fem::OwnedField r = tissue_.residual(old.tissue, next.tissue.u, now, scale);
+  const bool pushed = correction.lambda.lambda.size() > 0;
+  if (pushed) {
+    fem::OwnedField push = correction.push;
+    tissue_.fixed().clear(push);
+    r.value += push.value;
+    scale += space_.norm(push);
+  }
+  residual = scale > 0.0 ? space_.norm(r) / scale : 0.0;
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
+    // are below round-off.
+    const needle::Linearised again = needles_[i].linearise(old.needles[i], next.needles[i], now);
+    const core::VecX lever =
+        pushed ? correction.levers[i] : core::VecX::Zero(again.r.size()).eval();
+    residual = std::max(residual, needles_[i].relative_increment(again, lever));
+  }
+  if (residual > balance_tolerance) return false;
+  // The rows turn with the shaft: the gaps of the new geometry must be closed as well.
+  State probe = next;
+  const Rows again = coupling_rows(probe);
+  for (const constraint::Row& row : again.set.rows())
+    if (row.kind == law::RowKind::bilateral &&
+        std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, 1e-9))
+      return false;
+  return true;
+}
+
+void Simulation::accept(const Rows& rows, const Correction& correction, State& next,
+                        StepReport& report) const
+{
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    NeedleReport& needle = report.needles[i];
+    if (!rows.set.empty())
+      needle.coupling =
+          insertion_->accept(next.insertions[i], rows.of_needle[i], correction.lambda);
+    needle.tip = next.needles[i].shaft.tip();
+    needle.depth = insertion_->depth(next.insertions[i]);
+  }
+}
+
+}  // namespace trocar::driver

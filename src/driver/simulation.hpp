@@ -1,0 +1,126 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "constraint/reduce.hpp"
+#include "driver/scenario.hpp"
+#include "mesh/partition.hpp"
+
+namespace trocar::driver {
+
+using core::Vec3;
+
+/// All that changes in a run. A value: a rejected step leaves no trace.
+struct State
+{
+  double t = 0.0;  ///< [s]
+  tissue::TissueState tissue;
+  std::vector<needle::NeedleState> needles;
+  std::vector<insertion::InsertionState> insertions;  ///< by needle
+};
+
+/// What one needle did in a step.
+struct NeedleReport
+{
+  Vec3 tip = Vec3::Zero();  ///< [m]
+  double depth = 0.0;       ///< inserted path length in tissue [m]
+  needle::Wrench base;      ///< by the holder on the needle
+  insertion::CouplingReport coupling;
+};
+
+/// Figures of an accepted step, for log and histories. Equal on every rank.
+struct StepReport
+{
+  std::vector<NeedleReport> needles;
+  int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
+  double residual = 0.0;                   ///< worst of the step [m]
+  bool nonunique = false;
+  solve::ComplianceReport compliance;  ///< sums over the step's linearisations
+  int linearisations = 0;
+};
+
+/// An accepted new state, or why the step was rejected. Agreed by all ranks.
+struct StepResult
+{
+  std::optional<State> state;
+  StepReport report;
+  std::string why;
+
+  static StepResult rejected(const std::string& why) { return {std::nullopt, {}, why}; }
+};
+
+/// One scene: bodies, needles, their coupling, and the step of the papers.
+class Simulation
+{
+ public:
+  /// Borrows the scenario. Collective.
+  Simulation(const Scenario& scenario, const base::Comm& comm);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// State before the first step: at rest, or in equilibrium with the loads; inserted needles are
+  /// coupled on the undeformed mesh first. Failure (70) when no equilibrium is found. Collective.
+  StepResult initial_state();
+
+  /// One step from `old`; the old state is not touched. Collective.
+  StepResult step(const State& old, const core::TimeStep& now);
+
+  /// Static equilibrium at `now.t`, with load steps when one does not do. Collective.
+  StepResult equilibrium(const State& old, const core::TimeStep& now);
+
+  /// Factors the first operator, for -check. Collective.
+  void prepare();
+
+  const Scenario& scenario() const { return scenario_; }
+  const fem::Space& space() const { return space_; }
+  const core::Ledger& ledger() const { return ledger_; }
+  core::Ledger& ledger() { return ledger_; }
+  const tissue::Tissue& tissue() const { return tissue_; }
+  tissue::Tissue& tissue() { return tissue_; }
+  const std::vector<needle::Needle>& needles() const { return needles_; }
+  /// See Insertion::tributary_lengths [m].
+  core::MatX tributary(const insertion::InsertionState& state) const
+  {
+    return insertion_->tributary_lengths(state);
+  }
+
+ private:
+  struct Rows
+  {
+    constraint::Set set;
+    std::vector<std::vector<insertion::PointRows>> of_needle;
+  };
+  struct Correction
+  {
+    fem::OwnedField push;            ///< Hᵀλ on the tissue [N]
+    std::vector<core::VecX> levers;  ///< H_nᵀλ on each needle
+    law::Multipliers lambda;
+  };
+
+  void move_needles(const State& old, State& next) const;
+  Rows coupling_rows(State& next) const;
+  std::optional<std::string> solve_constraints(const Rows& rows,
+                                               const fem::OwnedField& free_increment,
+                                               const std::vector<needle::Linearised>& needles,
+                                               Correction& correction, StepReport& report);
+  void correct(const State& old, const core::TimeStep& now, const fem::OwnedField& free_increment,
+               const std::vector<needle::Linearised>& needles, const Correction& correction,
+               State& next, StepReport& report);
+  bool balanced(const State& old, const State& next, const core::TimeStep& now,
+                const Correction& correction, double& residual) const;
+  void accept(const Rows& rows, const Correction& correction, State& next,
+              StepReport& report) const;
+
+  const Scenario& scenario_;
+  core::Ledger ledger_;
+  fem::Space space_;
+  tissue::Tissue tissue_;
+  std::vector<needle::Needle> needles_;
+  std::optional<mesh::Locator> locator_;           ///< only with needles
+  std::optional<insertion::Insertion> insertion_;  ///< only with needles
+};
+
+}  // namespace trocar::driver

@@ -1,0 +1,149 @@
+#include "fem/space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/petsc.hpp"
+
+namespace trocar::fem {
+namespace {
+
+std::vector<int> exclusive_sum(const std::vector<int>& counts)
+{
+  std::vector<int> starts(counts.size(), 0);
+  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
+  return starts;
+}
+
+}  // namespace
+
+Space::Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm)
+    : comm_(comm)
+{
+  number_nodes(node_owner);
+  collect_local_tets(mesh, node_owner);
+  plan_exchange(mesh, node_owner);
+}
+
+void Space::number_nodes(const std::vector<int>& owner)
+{
+  counts_.assign(index(comm_.size()), 0);
+  for (int rank : owner) ++counts_[index(rank)];
+  starts_ = exclusive_sum(counts_);
+  owned_ = counts_[index(comm_.rank())];
+  first_ = starts_[index(comm_.rank())];
+  std::vector<int> next = starts_;
+  number_.resize(owner.size());
+  file_order_.resize(owner.size());
+  for (int node = 0; node < static_cast<int>(owner.size()); ++node) {
+    number_[index(node)] = next[index(owner[index(node)])]++;
+    file_order_[index(number_[index(node)])] = node;
+  }
+  for (int& count : counts_) count *= 3;
+  for (int& start : starts_) start *= 3;
+}
+
+void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner)
+{
+  const int me = comm_.rank();
+  file_node_.assign(file_order_.begin() + first_, file_order_.begin() + first_ + owned_);
+  std::vector<int> ghosts;
+  for (const mesh::Tet& tet : mesh.tets) {
+    if (std::none_of(tet.begin(), tet.end(), [&](int n) { return owner[index(n)] == me; }))
+      continue;
+    for (int node : tet)
+      if (owner[index(node)] != me) ghosts.push_back(node);
+  }
+  // Ghosts by global number, hence by owner: each rank's values arrive as one contiguous run.
+  std::sort(ghosts.begin(), ghosts.end(),
+            [&](int a, int b) { return number_[index(a)] < number_[index(b)]; });
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+  file_node_.insert(file_node_.end(), ghosts.begin(), ghosts.end());
+  std::vector<int> local_of(owner.size(), -1);
+  for (int local = 0; local < static_cast<int>(file_node_.size()); ++local)
+    local_of[index(file_node_[index(local)])] = local;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const mesh::Tet& tet = mesh.tets[index(t)];
+    if (std::none_of(tet.begin(), tet.end(), [&](int n) { return owner[index(n)] == me; }))
+      continue;
+    LocalTet local{t, {}};
+    for (std::size_t a = 0; a < 4; ++a) local.nodes[a] = local_of[index(tet[a])];
+    tets_.push_back(local);
+  }
+}
+
+void Space::plan_exchange(const mesh::Mesh& mesh, const std::vector<int>& owner)
+{
+  receive_count_.assign(index(comm_.size()), 0);
+  for (int local = owned_; local < this->local(); ++local)
+    receive_count_[index(owner[index(file_node_[index(local)])])] += 3;
+  receive_start_ = exclusive_sum(receive_count_);
+
+  // The mesh is known everywhere, so who needs which of my nodes needs no message.
+  std::vector<std::vector<int>> wanted(index(comm_.size()));
+  for (const mesh::Tet& tet : mesh.tets)
+    for (int mine : tet) {
+      if (owner[index(mine)] != comm_.rank()) continue;
+      for (int other : tet)
+        if (owner[index(other)] != comm_.rank())
+          wanted[index(owner[index(other)])].push_back(number_[index(mine)] - first_);
+    }
+  for (auto& nodes : wanted) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    send_nodes_.insert(send_nodes_.end(), nodes.begin(), nodes.end());
+    send_count_.push_back(3 * static_cast<int>(nodes.size()));
+  }
+  send_start_ = exclusive_sum(send_count_);
+}
+
+int Space::owned_local(int file_node) const
+{
+  const int local = number_[index(file_node)] - first_;
+  return local >= 0 && local < owned_ ? local : -1;
+}
+
+GhostedField Space::with_ghosts(const OwnedField& field) const
+{
+  GhostedField ghosted{VecX(3 * local())};
+  ghosted.value.head(owned_dofs()) = field.value;
+  if (comm_.size() == 1) return ghosted;
+  VecX send(3 * static_cast<int>(send_nodes_.size()));
+  for (int i = 0; i < static_cast<int>(send_nodes_.size()); ++i)
+    send.segment<3>(3 * i) = field.node(send_nodes_[index(i)]);
+  TROCAR_MPI(MPI_Alltoallv(send.data(), send_count_.data(), send_start_.data(), MPI_DOUBLE,
+                           ghosted.value.data() + owned_dofs(), receive_count_.data(),
+                           receive_start_.data(), MPI_DOUBLE, comm_.get()));
+  return ghosted;
+}
+
+GlobalField Space::gather(const OwnedField& field) const
+{
+  VecX ordered(3 * global());
+  TROCAR_MPI(MPI_Allgatherv(field.value.data(), owned_dofs(), MPI_DOUBLE, ordered.data(),
+                            counts_.data(), starts_.data(), MPI_DOUBLE, comm_.get()));
+  GlobalField result{VecX(3 * global())};
+  for (int node = 0; node < global(); ++node)
+    result.node(node) = ordered.segment<3>(3 * number_[index(node)]);
+  return result;
+}
+
+OwnedField Space::restrict_to_owned(const GlobalField& field) const
+{
+  OwnedField owned = zero();
+  for (int local = 0; local < owned_; ++local) owned.node(local) = field.node(file_node(local));
+  return owned;
+}
+
+double Space::dot(const OwnedField& a, const OwnedField& b) const
+{
+  return comm_.sum(a.value.dot(b.value));
+}
+
+double Space::norm(const OwnedField& a) const
+{
+  return std::sqrt(dot(a, a));
+}
+
+}  // namespace trocar::fem

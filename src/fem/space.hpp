@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/comm.hpp"
+#include "core/math.hpp"
+#include "mesh/mesh.hpp"
+
+namespace trocar::fem {
+
+using core::Vec3;
+using core::VecX;
+
+/// Values at the nodes this rank owns, three per node, in local order. A value type: states copy
+/// it freely. Without ghosts: what linear algebra works on.
+struct OwnedField
+{
+  VecX value;
+
+  auto node(int local) { return value.segment<3>(3 * local); }
+  auto node(int local) const { return value.segment<3>(3 * local); }
+};
+
+/// Values at owned nodes followed by ghost nodes: what element loops read.
+struct GhostedField
+{
+  VecX value;
+
+  auto node(int local) const { return value.segment<3>(3 * local); }
+};
+
+/// Values at every node of the mesh in mesh-file order, equal on every rank.
+struct GlobalField
+{
+  VecX value;
+
+  auto node(int file_node) { return value.segment<3>(3 * file_node); }
+  auto node(int file_node) const { return value.segment<3>(3 * file_node); }
+};
+
+/// The P1 dof map: three dofs per node; each rank owns the nodes the partition gives it, numbered
+/// contiguously by rank and in file order within a rank. A rank's local tets are all tets that
+/// touch a node it owns, so that it can assemble its own rows without communication.
+class Space
+{
+ public:
+  Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm);
+
+  const base::Comm& comm() const { return comm_; }
+  int owned() const { return owned_; }                               ///< nodes owned here
+  int local() const { return static_cast<int>(file_node_.size()); }  ///< owned + ghost nodes
+  int global() const { return static_cast<int>(number_.size()); }    ///< nodes in all
+  int first() const { return first_; }  ///< global number of the first owned node
+  int owned_dofs() const { return 3 * owned_; }
+
+  /// Global number of a local node.
+  int number(int local) const { return number_[index(file_node_[index(local)])]; }
+  /// Global number of a file node.
+  int number_of_file(int file_node) const { return number_[index(file_node)]; }
+  /// File node of a local node.
+  int file_node(int local) const { return file_node_[index(local)]; }
+  /// Local number of a file node owned here, or -1.
+  int owned_local(int file_node) const;
+
+  struct LocalTet
+  {
+    int file_tet;
+    std::array<int, 4> nodes;  ///< local
+  };
+  const std::vector<LocalTet>& tets() const { return tets_; }
+
+  OwnedField zero() const { return {VecX::Zero(owned_dofs())}; }
+  GhostedField with_ghosts(const OwnedField& field) const;  ///< collective
+  GlobalField gather(const OwnedField& field) const;        ///< collective, on every rank
+  /// The owned part of a global field. Not collective.
+  OwnedField restrict_to_owned(const GlobalField& field) const;
+
+  double dot(const OwnedField& a, const OwnedField& b) const;  ///< collective
+  double norm(const OwnedField& a) const;                      ///< collective
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  void number_nodes(const std::vector<int>& owner);
+  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner);
+  void plan_exchange(const mesh::Mesh& mesh, const std::vector<int>& owner);
+
+  base::Comm comm_;
+  int owned_ = 0;
+  int first_ = 0;
+  std::vector<int> number_;      ///< global number by file node
+  std::vector<int> file_order_;  ///< file node by global number
+  std::vector<int> file_node_;   ///< file node by local node
+  std::vector<LocalTet> tets_;
+  std::vector<int> counts_, starts_;          ///< owned dofs and first dof of every rank
+  std::vector<int> send_nodes_;               ///< local owned nodes, by receiving rank
+  std::vector<int> send_count_, send_start_;  ///< in dofs, by rank
+  std::vector<int> receive_count_, receive_start_;
+};
+
+}  // namespace trocar::fem

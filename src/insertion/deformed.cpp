@@ -1,0 +1,120 @@
+#include "insertion/deformed.hpp"
+
+#include <algorithm>
+
+#include "insertion/clip.hpp"
+
+namespace trocar::insertion {
+namespace {
+
+constexpr double inside = -1e-9;  ///< barycentric slack of "in the tet"
+
+}  // namespace
+
+Deformed::Deformed(const mesh::Mesh& mesh, const mesh::Locator& locator, const fem::GlobalField& u)
+    : mesh_(&mesh),
+      locator_(&locator),
+      u_(&u),
+      largest_displacement_(u.value.size() ? u.value.cwiseAbs().maxCoeff() : 0.0)
+{
+}
+
+Vec3 Deformed::displacement(const constraint::Anchor& anchor) const
+{
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t a = 0; a < 4; ++a)
+    sum += anchor.weight[static_cast<Eigen::Index>(a)] * u_->node(anchor.node[a]);
+  return sum;
+}
+
+Vec3 Deformed::position(const constraint::Anchor& anchor) const
+{
+  Vec3 sum = displacement(anchor);
+  for (std::size_t a = 0; a < 4; ++a)
+    sum += anchor.weight[static_cast<Eigen::Index>(a)] *
+           mesh_->x[static_cast<std::size_t>(anchor.node[a])];
+  return sum;
+}
+
+std::array<Vec3, 4> Deformed::corners_now(int tet) const
+{
+  std::array<Vec3, 4> corner = mesh::corners(*mesh_, tet);
+  for (std::size_t a = 0; a < 4; ++a)
+    corner[a] += u_->node(mesh_->tets[static_cast<std::size_t>(tet)][a]);
+  return corner;
+}
+
+std::vector<int> Deformed::candidates(const Vec3& low, const Vec3& high) const
+{
+  const Vec3 reach = Vec3::Constant(1.001 * largest_displacement_ + 1e-9);
+  return locator_->in_box(low - reach, high + reach);
+}
+
+Vec3 Deformed::pull_back(int tet, const Vec3& x) const
+{
+  const Eigen::Vector4d weight = mesh::barycentric(corners_now(tet), x);
+  const auto reference = mesh::corners(*mesh_, tet);
+  Vec3 X = Vec3::Zero();
+  for (std::size_t a = 0; a < 4; ++a) X += weight[static_cast<Eigen::Index>(a)] * reference[a];
+  return X;
+}
+
+std::optional<Vec3> Deformed::reference_place(const Vec3& x, const Vec3& guess) const
+{
+  const auto search = [&](const std::vector<int>& tets) -> std::optional<Vec3> {
+    for (int tet : tets)
+      if (mesh::barycentric(corners_now(tet), x).minCoeff() >= inside) return pull_back(tet, x);
+    return std::nullopt;
+  };
+  const Vec3 near = Vec3::Constant(1e-9);
+  if (auto found = search(locator_->in_box(guess - near, guess + near))) return found;
+  return search(candidates(x, x));
+}
+
+Vec3 Deformed::reference_place_continued(const Vec3& x, int tet) const
+{
+  return pull_back(tet, x);
+}
+
+std::optional<Vec3> Deformed::entry(const Vec3& P, const Vec3& Q) const
+{
+  struct Stretch
+  {
+    double low, high;
+    int tet;
+  };
+  std::vector<Stretch> stretches;
+  for (int tet : candidates(P.cwiseMin(Q), P.cwiseMax(Q))) {
+    const auto span = clip_line(corners_now(tet), P, Q);
+    if (span && span->high > 0.0 && span->low < 1.0)
+      stretches.push_back({span->low, span->high, tet});
+  }
+  std::sort(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
+    return a.low != b.low ? a.low > b.low : a.tet < b.tet;
+  });
+  // Walk back from Q through touching stretches: the last one reached begins at the surface.
+  double reached = 1.0;
+  const Stretch* first = nullptr;
+  constexpr double touch = 1e-6;
+  for (const Stretch& stretch : stretches) {
+    if (stretch.high < reached - touch) continue;
+    if (stretch.low < reached) {
+      reached = stretch.low;
+      first = &stretch;
+    }
+  }
+  if (!first) return std::nullopt;
+  return pull_back(first->tet, P + std::max(first->low, 0.0) * (Q - P));
+}
+
+bool Deformed::meets(const Vec3& P, const Vec3& Q) const
+{
+  for (int tet : candidates(P.cwiseMin(Q), P.cwiseMax(Q))) {
+    const auto span = clip_line(corners_now(tet), P, Q);
+    if (span && span->high >= -1e-6 && span->low <= 1.0 + 1e-6 && span->high > span->low)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace trocar::insertion

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "fem/space.hpp"
+#include "insertion/path.hpp"
+
+namespace trocar::insertion {
+
+/// The tissue as it stands: reference mesh plus displacement of every node. Maps between places in
+/// the world and in the reference. Equal on every rank; not collective. Borrows everything.
+class Deformed
+{
+ public:
+  Deformed(const mesh::Mesh& mesh, const mesh::Locator& locator, const fem::GlobalField& u);
+
+  Vec3 displacement(const constraint::Anchor& anchor) const;  ///< [m]
+  Vec3 position(const constraint::Anchor& anchor) const;      ///< where the anchor is now [m]
+
+  /// Reference place of the world point x, searched near the reference place `guess`; nothing when
+  /// x is in no tet.
+  std::optional<Vec3> reference_place(const Vec3& x, const Vec3& guess) const;
+
+  /// As above with the map of one tet continued beyond its faces: for a tip that has left.
+  Vec3 reference_place_continued(const Vec3& x, int tet) const;
+
+  /// Reference place where the world segment from outside P to inside Q enters the stretch of
+  /// tissue that holds Q; nothing when Q is outside.
+  std::optional<Vec3> entry(const Vec3& P, const Vec3& Q) const;
+
+  /// True when the world segment P Q meets the tissue at all.
+  bool meets(const Vec3& P, const Vec3& Q) const;
+
+ private:
+  std::array<Vec3, 4> corners_now(int tet) const;
+  std::vector<int> candidates(const Vec3& low, const Vec3& high) const;
+  Vec3 pull_back(int tet, const Vec3& x) const;
+
+  const mesh::Mesh* mesh_;
+  const mesh::Locator* locator_;
+  const fem::GlobalField* u_;
+  double largest_displacement_;  ///< [m], bounds how far a tet is from its reference box
+};
+
+}  // namespace trocar::insertion

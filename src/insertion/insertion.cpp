@@ -1,0 +1,216 @@
+#include "insertion/insertion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/failure.hpp"
+
+namespace trocar::insertion {
+namespace {
+
+/// First and last tet of the path: where the needle goes in, and where its end is.
+int first_tet(const Path& path)
+{
+  for (const Piece& piece : path.pieces)
+    if (piece.tet >= 0) return piece.tet;
+  return -1;
+}
+int last_tet(const Path& path)
+{
+  for (auto piece = path.pieces.rbegin(); piece != path.pieces.rend(); ++piece)
+    if (piece->tet >= 0) return piece->tet;
+  return -1;
+}
+
+}  // namespace
+
+Insertion::Insertion(const mesh::Mesh& mesh, const mesh::Locator& locator,
+                     InsertionSettings settings)
+    : mesh_(&mesh), locator_(&locator), settings_(std::move(settings))
+{
+}
+
+InsertionState Insertion::start(const needle::Needle& needle) const
+{
+  const needle::BaseMotion& motion = needle.settings().motion;
+  InsertionState state;
+  if (!(motion.inserted > 0.0)) return state;
+  grow(state.path, motion.entry, *mesh_, *locator_, settings_.placement);
+  grow(state.path, motion.entry + motion.inserted * motion.direction, *mesh_, *locator_,
+       settings_.placement);
+  if (first_tet(state.path) < 0)
+    throw core::data_error("needle '" + needle.settings().name +
+                           "': the inserted part lies outside the tissue (check -needle_entry, "
+                           "-needle_direction and -needle_inserted)");
+  state.phase = Phase::inserted;
+  CouplingPoint resting;
+  resting.unplaced = true;
+  add_points_behind(state, state.path.length(), resting);
+  return state;
+}
+
+InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft& predicted,
+                                  const Deformed& tissue) const
+{
+  InsertionState next = old;
+  const Vec3& tip = predicted.tip();
+  CouplingPoint born;
+  born.needle_arc = predicted.length;
+  born.stuck = false;
+  if (next.path.empty()) {
+    const auto entry = tissue.entry(predicted.x.front(), tip);
+    const auto X = entry ? tissue.reference_place(tip, *entry) : std::nullopt;
+    if (!X || (*X - *entry).norm() <= 0.0) return next;
+    Path path;
+    grow(path, *entry, *mesh_, *locator_, settings_.placement);
+    grow(path, *X, *mesh_, *locator_, settings_.placement);
+    if (first_tet(path) < 0) return next;
+    next.path = std::move(path);
+    next.phase = Phase::inserted;
+    add_points_behind(next, next.path.length(), born);
+    return next;
+  }
+  // Beyond its tets the map of the nearest end is continued: the tip may be out at either side.
+  const bool behind = old.tip_arc <= 0.5 * old.path.length();
+  const int end_tet = behind ? first_tet(old.path) : last_tet(old.path);
+  const auto inside = tissue.reference_place(tip, old.path.vertex.back());
+  const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
+  double arc = arc_nearest(next.path, X);
+  const double tolerance = arc_tolerance(*mesh_, end_tet);
+  if (arc > next.path.length() + 1e-3 * tolerance) {
+    grow(next.path, X, *mesh_, *locator_, settings_.placement);
+    arc = next.path.length();
+  }
+  // A tip outside the tissue in front of the entry has left the channel, whatever the map says.
+  if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
+  next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;
+  drop_points_ahead(next, arc);
+  add_points_behind(next, arc, born);
+  return next;
+}
+
+bool Insertion::passed(const InsertionState& state, std::size_t site, double arc) const
+{
+  const Site& place = state.path.sites[site];
+  return arc > 0.0 && place.arc <= arc + arc_tolerance(*mesh_, place.tet);
+}
+
+void Insertion::drop_points_ahead(InsertionState& state, double arc) const
+{
+  while (!state.points.empty() &&
+         !passed(state, static_cast<std::size_t>(state.points.back().site), arc))
+    state.points.pop_back();
+}
+
+void Insertion::add_points_behind(InsertionState& state, double arc,
+                                  const CouplingPoint& born) const
+{
+  state.tip_arc = arc;
+  while (state.points.size() < state.path.sites.size() && passed(state, state.points.size(), arc)) {
+    CouplingPoint point = born;
+    point.site = static_cast<int>(state.points.size());
+    state.points.push_back(point);
+  }
+}
+
+double Insertion::depth(const InsertionState& state) const
+{
+  return state.path.empty() ? 0.0 : tissue_length(state.path, state.tip_arc);
+}
+
+core::MatX Insertion::tributary_lengths(const InsertionState& state) const
+{
+  const auto points = static_cast<Eigen::Index>(state.points.size());
+  core::MatX length = core::MatX::Zero(points, static_cast<Eigen::Index>(mesh_->volumes.size()));
+  if (points == 0) return length;
+  const auto arc_of = [&](Eigen::Index k) {
+    const int site = state.points[static_cast<std::size_t>(k)].site;
+    return state.path.sites[static_cast<std::size_t>(site)].arc;
+  };
+  for (const Piece& piece : state.path.pieces) {
+    if (piece.tet < 0) continue;
+    const int region = mesh_->region[static_cast<std::size_t>(piece.tet)];
+    double at = piece.begin;
+    const double end = std::min(piece.end, state.tip_arc);
+    for (Eigen::Index k = 0; k < points && at < end; ++k) {
+      // The cell of point k ends half-way to the next one; the last one's at the tip.
+      const double border = k + 1 < points ? 0.5 * (arc_of(k) + arc_of(k + 1)) : end;
+      if (border <= at) continue;
+      length(k, region) += std::min(border, end) - at;
+      at = std::min(border, end);
+    }
+  }
+  return length;
+}
+
+std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::Shaft& shaft,
+                                           const Deformed& tissue, int body,
+                                           constraint::Set& set) const
+{
+  std::vector<PointRows> rows;
+  const core::MatX tributary = tributary_lengths(state);
+  for (std::size_t k = 0; k < state.points.size(); ++k) {
+    CouplingPoint& point = state.points[k];
+    const constraint::Anchor& anchor =
+        state.path.sites[static_cast<std::size_t>(point.site)].anchor;
+    const Vec3 p = tissue.position(anchor);
+    const needle::ShaftPoint on_shaft = needle::project(shaft, p);
+    if (point.unplaced) point.needle_arc = on_shaft.s;
+    point.unplaced = false;
+
+    double bound = 0.0;
+    for (std::size_t region = 0; region < settings_.friction.size(); ++region) {
+      const Friction& friction = settings_.friction[region];
+      const double tau = point.stuck ? friction.static_limit : friction.dynamic_limit;
+      bound += tau * tributary(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(region));
+    }
+    PointRows mine{set.size(), -1};
+    constraint::Row row;
+    row.anchor = anchor;
+    row.body = body;
+    row.point = mine.first;
+    for (int lateral = 0; lateral < 2; ++lateral) {
+      row.direction = lateral == 0 ? on_shaft.normal_1 : on_shaft.normal_2;
+      row.gap = row.direction.dot(p - on_shaft.x);
+      row.lever = needle::lever(shaft, on_shaft.s, row.direction);
+      row.start = point.lambda[lateral];
+      set.add(row);
+    }
+    if (bound > 0.0) {
+      mine.axial = set.size();
+      row.kind = law::RowKind::box;
+      row.bound = bound;
+      row.direction = on_shaft.tangent;
+      row.gap = on_shaft.s - point.needle_arc;
+      row.lever = needle::lever(shaft, on_shaft.s, row.direction);
+      row.start = point.lambda[2];
+      set.add(row);
+    } else {
+      point.needle_arc = on_shaft.s;  // nothing holds it: it sticks, if ever, where it is then
+    }
+    rows.push_back(mine);
+  }
+  return rows;
+}
+
+CouplingReport Insertion::accept(InsertionState& state, const std::vector<PointRows>& rows,
+                                 const law::Multipliers& multipliers) const
+{
+  CouplingReport report;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    CouplingPoint& point = state.points[k];
+    point.lambda.setZero();
+    point.lambda.head<2>() = multipliers.lambda.segment<2>(rows[k].first);
+    if (rows[k].axial < 0) continue;
+    const double lambda = multipliers.lambda[rows[k].axial];
+    const double slip = multipliers.delta[rows[k].axial];
+    point.lambda[2] = lambda;
+    point.stuck = std::abs(slip) <= settings_.stick_tolerance;
+    if (!point.stuck) point.needle_arc += slip;
+    report.shaft_friction += lambda;
+    report.friction_work += lambda * slip;
+  }
+  return report;
+}
+
+}  // namespace trocar::insertion

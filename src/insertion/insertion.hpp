@@ -1,0 +1,108 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "constraint/set.hpp"
+#include "insertion/deformed.hpp"
+#include "insertion/path.hpp"
+#include "law/problem.hpp"
+#include "needle/needle.hpp"
+
+namespace trocar::insertion {
+
+enum class Phase { outside, inserted, withdrawn };
+
+/// State of one coupling point: a material place of the tissue held by the shaft. A point is born
+/// when the tip passes it: it starts at the tip of the needle, slipping.
+struct CouplingPoint
+{
+  int site = 0;                ///< index in Path::sites, its identity
+  double needle_arc = 0.0;     ///< arc length on the needle it sticks to [m]; moves only in slip
+  bool stuck = true;           ///< at the end of the last step
+  Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
+  bool unplaced = false;  ///< made on the undeformed mesh: takes its needle_arc where it is now
+};
+
+/// How one needle sits in the tissue. A value, equal on every rank.
+struct InsertionState
+{
+  Phase phase = Phase::outside;
+  Path path;
+  double tip_arc = 0.0;               ///< where the tip is along the path [m]
+  std::vector<CouplingPoint> points;  ///< by site, all at or behind the tip
+};
+
+/// Shaft friction per length of one tissue (box law, DESIGN section 4).
+struct Friction
+{
+  double static_limit = 0.0;   ///< F/ℓ of a point that stuck at the start of the step [N/m]
+  double dynamic_limit = 0.0;  ///< F/ℓ of a slipping point [N/m]
+};
+
+struct InsertionSettings
+{
+  PlacementSettings placement;
+  std::vector<Friction> friction;  ///< by volume of the mesh
+  double stick_tolerance = 1e-9;   ///< |δ| below which a point has stuck [m]
+};
+
+/// Which rows a coupling point got in a set, and where it was on the shaft.
+struct PointRows
+{
+  int first = 0;   ///< first of two lateral rows
+  int axial = -1;  ///< row of the axial law, -1 when its bound is 0
+};
+
+/// What one needle's coupling did in a step.
+struct CouplingReport
+{
+  double shaft_friction = 0.0;  ///< Σ axial λ [N], > 0 resists insertion
+  double friction_work = 0.0;   ///< Σ λ δ of the axial rows [J], <= 0
+};
+
+/// The coupling of needles and tissue: path, coupling points and their rows.
+/// Nothing here is collective: every rank computes the same from the same.
+class Insertion
+{
+ public:
+  /// Borrows mesh and locator.
+  Insertion(const mesh::Mesh& mesh, const mesh::Locator& locator, InsertionSettings settings);
+
+  /// State of a needle that starts `inserted` deep along its direction: path and points are made
+  /// on the undeformed mesh. Throws Failure (65) when that path never meets the tissue.
+  InsertionState start(const needle::Needle& needle) const;
+
+  /// Events of a step, decided before the solve: the tip at its predicted place is mapped through
+  /// the old deformation; the path grows, points are born at the tip or dropped ahead of it.
+  InsertionState advance(const InsertionState& old, const needle::Shaft& predicted,
+                         const Deformed& tissue) const;
+
+  /// Adds this needle's rows at the iterate (deformed tissue and shaft); `body` is its index among
+  /// the small bodies.
+  std::vector<PointRows> add_rows(InsertionState& state, const needle::Shaft& shaft,
+                                  const Deformed& tissue, int body, constraint::Set& set) const;
+
+  /// Takes multipliers and end-of-step gaps back into the points: stick or slip.
+  CouplingReport accept(InsertionState& state, const std::vector<PointRows>& rows,
+                        const law::Multipliers& multipliers) const;
+
+  /// Depth: length of the inserted path that lies in tissue [m].
+  double depth(const InsertionState& state) const;
+
+  /// ∫ over the piece of path nearest to each point [m] per tissue volume, so that the sum over
+  /// points is the inserted length in tissue. Shape (points, volumes).
+  core::MatX tributary_lengths(const InsertionState& state) const;
+
+ private:
+  void drop_points_ahead(InsertionState& state, double arc) const;
+  void add_points_behind(InsertionState& state, double arc, const CouplingPoint& born) const;
+  bool passed(const InsertionState& state, std::size_t site, double arc) const;
+
+  const mesh::Mesh* mesh_;
+  const mesh::Locator* locator_;
+  InsertionSettings settings_;
+};
+
+}  // namespace trocar::insertion

@@ -1,0 +1,179 @@
+#include "insertion/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "insertion/clip.hpp"
+
+namespace trocar::insertion {
+namespace {
+
+constexpr double relative_tolerance = 1e-6;  ///< of the local edge, DESIGN section 4
+
+/// A tet the segment's line passes through, over [low, high] in units of the segment.
+struct Passage
+{
+  int tet;
+  double low, high;
+  double tolerance;  ///< in units of the segment
+};
+
+std::vector<Passage> passages(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& P,
+                              const Vec3& Q)
+{
+  std::vector<Passage> found;
+  const double length = (Q - P).norm();
+  const Vec3 margin = Vec3::Constant(1e-9 + 1e-3 * length);
+  for (int tet : locator.in_box(P.cwiseMin(Q) - margin, P.cwiseMax(Q) + margin)) {
+    const auto span = clip_line(mesh::corners(mesh, tet), P, Q);
+    const double tolerance = arc_tolerance(mesh, tet) / length;
+    if (!span || span->high - span->low <= tolerance) continue;  // grazes a vertex or an edge
+    if (span->high < -tolerance || span->low > 1.0 + tolerance) continue;
+    found.push_back({tet, span->low, span->high, tolerance});
+  }
+  return found;
+}
+
+/// A face crossing on the segment, 0 <= t <= 1.
+struct Crossing
+{
+  double t;
+  double tolerance;
+};
+
+/// Distinct crossings in order. Two tets that share a face report it twice, a vertex many times.
+std::vector<Crossing> crossings_of(const std::vector<Passage>& passages)
+{
+  std::vector<Crossing> all;
+  for (const Passage& p : passages)
+    for (double t : {p.low, p.high})
+      if (t >= -p.tolerance && t <= 1.0 + p.tolerance)
+        all.push_back({std::clamp(t, 0.0, 1.0), p.tolerance});
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+  std::vector<Crossing> distinct;
+  for (const Crossing& c : all)
+    if (distinct.empty() ||
+        c.t - distinct.back().t > std::min(c.tolerance, distinct.back().tolerance))
+      distinct.push_back(c);
+  return distinct;
+}
+
+int lowest_tet_at(const std::vector<Passage>& passages, double t, double slack_factor)
+{
+  for (const Passage& p : passages)  // ascending tets: ties go to the lowest
+    if (t >= p.low - slack_factor * p.tolerance && t <= p.high + slack_factor * p.tolerance)
+      return p.tet;
+  return -1;
+}
+
+void add_pieces(Path& path, const std::vector<Passage>& passages,
+                const std::vector<Crossing>& crossings, double begin, double length)
+{
+  std::vector<double> cuts{0.0};
+  for (const Crossing& c : crossings)
+    if (c.t > cuts.back() && c.t < 1.0) cuts.push_back(c.t);
+  cuts.push_back(1.0);
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
+    const double end = i + 2 == cuts.size() ? begin + length : begin + cuts[i + 1] * length;
+    const double start = path.pieces.empty() ? begin : path.pieces.back().end;
+    path.pieces.push_back({start, end, lowest_tet_at(passages, middle, 0.0)});
+  }
+}
+
+double mean_edge(const std::array<Vec3, 4>& p)
+{
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b) sum += (p[b] - p[a]).norm();
+  return sum / 6.0;
+}
+
+void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
+{
+  Site site{arc, tet, {mesh.tets[static_cast<std::size_t>(tet)], {}}};
+  Eigen::Vector4d weight = mesh::barycentric(mesh::corners(mesh, tet), X);
+  for (int a = 0; a < 4; ++a)
+    if (weight[a] < relative_tolerance) weight[a] = 0.0;  // on a face: the opposite node is free
+  site.anchor.weight = weight / weight.sum();
+  if (!path.sites.empty())
+    path.smallest_gap = std::min(path.smallest_gap, arc - path.sites.back().arc);
+  path.sites.push_back(site);
+}
+
+}  // namespace
+
+double arc_tolerance(const mesh::Mesh& mesh, int tet)
+{
+  return relative_tolerance * mean_edge(mesh::corners(mesh, tet));
+}
+
+void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator& locator,
+          const PlacementSettings& settings)
+{
+  if (path.empty()) {
+    path.vertex.push_back(X);
+    path.arc.push_back(0.0);
+    return;
+  }
+  const Vec3 P = path.vertex.back();
+  const double begin = path.length();
+  const double length = (X - P).norm();
+  if (!(length > 0.0)) return;
+  const std::vector<Passage> tets = passages(mesh, locator, P, X);
+  const std::vector<Crossing> crossings = crossings_of(tets);
+  add_pieces(path, tets, crossings, begin, length);
+  path.vertex.push_back(X);
+  path.arc.push_back(begin + length);
+
+  for (const Crossing& c : crossings) {
+    const double arc = begin + c.t * length;
+    if (!path.crossings.empty() && arc - path.crossings.back() <= c.tolerance * length) continue;
+    path.crossings.push_back(arc);
+    if (settings.placement != Placement::crossings) continue;
+    const int tet = lowest_tet_at(tets, c.t, 1.0);
+    const double shortest = settings.merge * mean_edge(mesh::corners(mesh, tet));
+    // The tolerance keeps an exact tie from being decided by round-off.
+    if (!path.sites.empty() && arc - path.sites.back().arc < shortest * (1.0 - relative_tolerance))
+      continue;
+    add_site(path, mesh, tet, arc, P + c.t * (X - P));
+  }
+  if (settings.placement != Placement::spacing) return;
+  const double d = settings.spacing;
+  const auto first = static_cast<long>(std::floor(begin / d + 1e-9)) + (begin > 0.0 ? 1 : 0);
+  const auto last = static_cast<long>(std::floor((begin + length) / d + 1e-9));
+  for (long k = first; k <= last; ++k) {
+    const double t = std::clamp((static_cast<double>(k) * d - begin) / length, 0.0, 1.0);
+    const int tet = lowest_tet_at(tets, t, 1.0);
+    if (tet >= 0) add_site(path, mesh, tet, static_cast<double>(k) * d, P + t * (X - P));
+  }
+}
+
+double tissue_length(const Path& path, double arc)
+{
+  double length = 0.0;
+  for (const Piece& piece : path.pieces)
+    if (piece.tet >= 0) length += std::max(0.0, std::min(piece.end, arc) - piece.begin);
+  return length;
+}
+
+double arc_nearest(const Path& path, const Vec3& X)
+{
+  double best = std::numeric_limits<double>::infinity();
+  double arc = 0.0;
+  const std::size_t segments = path.vertex.size() - 1;
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Vec3 d = path.vertex[i + 1] - path.vertex[i];
+    const double low = i == 0 ? -std::numeric_limits<double>::infinity() : 0.0;
+    const double high = i + 1 == segments ? std::numeric_limits<double>::infinity() : 1.0;
+    const double t = std::clamp((X - path.vertex[i]).dot(d) / d.squaredNorm(), low, high);
+    const double distance = (path.vertex[i] + t * d - X).squaredNorm();
+    if (distance < best) {
+      best = distance;
+      arc = path.arc[i] + t * d.norm();
+    }
+  }
+  return arc;
+}
+
+}  // namespace trocar::insertion

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "constraint/set.hpp"
+#include "mesh/locator.hpp"
+
+namespace trocar::insertion {
+
+using core::Vec3;
+
+enum class Placement { crossings, spacing };
+
+struct PlacementSettings
+{
+  Placement placement = Placement::crossings;
+  double spacing = 0.005;  ///< [m]
+  double merge = 0.3;      ///< pieces shorter than merge · local edge drop the newer point
+};
+
+/// A stretch of the path in one tet, or in none (outside, a void).
+struct Piece
+{
+  double begin, end;  ///< arc length along the path [m]
+  int tet;            ///< -1: not in the tissue
+};
+
+/// A material place on the path where a coupling point may stand. Its index in `Path::sites` is
+/// its identity for the whole run.
+struct Site
+{
+  double arc;  ///< [m] from the start of the path
+  int tet;
+  constraint::Anchor anchor;  ///< weights of faces' opposite nodes are exactly 0
+};
+
+/// The channel the tip has cut, in *reference* coordinates: it does not move when the tissue does.
+/// A value; it only grows at its end.
+struct Path
+{
+  std::vector<Vec3> vertex;       ///< polyline [m]
+  std::vector<double> arc;        ///< arc length at each vertex [m]
+  std::vector<Piece> pieces;      ///< in order, covering 0 .. length()
+  std::vector<double> crossings;  ///< arcs of all face crossings, before merging
+  std::vector<Site> sites;        ///< by arc
+  double smallest_gap = std::numeric_limits<double>::infinity();  ///< between sites [m]
+
+  bool empty() const { return vertex.empty(); }
+  double length() const { return arc.empty() ? 0.0 : arc.back(); }
+};
+
+/// Appends the straight segment from the end of the path to X (reference), finds the faces it
+/// crosses and places sites. Predicates use half-open intervals with a tolerance of 1e-6 of the
+/// local edge, so that neither round-off nor the number of ranks decides about a tie: a crossing
+/// up to the tolerance beyond X counts as reached. A path starts as its first vertex.
+void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator& locator,
+          const PlacementSettings& settings);
+
+/// Length of the path up to `arc` that lies in tissue [m].
+double tissue_length(const Path& path, double arc);
+
+/// Arc length of the point of the path nearest to X; the first and last segments go on beyond
+/// their ends, so that the result may be negative or more than the length.
+double arc_nearest(const Path& path, const Vec3& X);
+
+/// Arc tolerance below which two places are one [m].
+double arc_tolerance(const mesh::Mesh& mesh, int tet);
+
+}  // namespace trocar::insertion

@@ -1,0 +1,231 @@
+#include "io/gmsh_reader.hpp"
+
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/failure.hpp"
+
+namespace trocar::io {
+namespace {
+
+constexpr int triangle_type = 2;
+constexpr int tet_type = 4;
+constexpr int point_type = 15;
+
+/// The Gmsh library between initialize and finalize, silent and ignorant of our command line.
+class GmshSession
+{
+ public:
+  GmshSession()
+  {
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+  }
+  ~GmshSession() { gmsh::finalize(); }
+  GmshSession(const GmshSession&) = delete;
+  GmshSession& operator=(const GmshSession&) = delete;
+};
+
+/// FNV-1a of the bytes, as 16 hexadecimal digits.
+std::string file_hash(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (char byte; stream.get(byte);)
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
+  std::ostringstream text;
+  text << std::hex << std::setw(16) << std::setfill('0') << hash;
+  return text.str();
+}
+
+struct Group
+{
+  int dim, tag;
+  std::string name;
+};
+
+std::vector<Group> physical_groups(int dim)
+{
+  const char* const kinds[] = {"point_", "curve_", "surface_", "volume_"};
+  gmsh::vectorpair pairs;
+  gmsh::model::getPhysicalGroups(pairs, dim);
+  std::vector<Group> groups;
+  for (const auto& [d, tag] : pairs) {
+    std::string name;
+    gmsh::model::getPhysicalName(d, tag, name);
+    if (name.empty()) name = kinds[d] + std::to_string(tag);
+    groups.push_back({d, tag, name});
+  }
+  return groups;
+}
+
+/// Tags and corner tags of all elements of one type in a group, corners per element consecutive.
+/// Throws Failure (65) for an element of another type in a volume group.
+void elements_of(const std::string& file, const Group& group, int type,
+                 std::vector<std::size_t>& tags, std::vector<std::size_t>& corners)
+{
+  std::vector<int> entities;
+  gmsh::model::getEntitiesForPhysicalGroup(group.dim, group.tag, entities);
+  for (int entity : entities) {
+    std::vector<int> types;
+    std::vector<std::vector<std::size_t>> element_tags, node_tags;
+    gmsh::model::mesh::getElements(types, element_tags, node_tags, group.dim, entity);
+    for (std::size_t k = 0; k < types.size(); ++k) {
+      if (types[k] == type) {
+        tags.insert(tags.end(), element_tags[k].begin(), element_tags[k].end());
+        corners.insert(corners.end(), node_tags[k].begin(), node_tags[k].end());
+      } else if (!element_tags[k].empty() && group.dim == 3) {
+        throw core::data_error(file + ": physical volume '" + group.name + "' holds element " +
+                               std::to_string(element_tags[k].front()) +
+                               " that is no linear tetrahedron (Gmsh type " +
+                               std::to_string(types[k]) + ")");
+      }
+    }
+  }
+}
+
+struct RawTet
+{
+  std::size_t tag;
+  std::array<std::size_t, 4> corner;
+  int region;
+};
+
+std::vector<RawTet> read_tets(mesh::Mesh& mesh)
+{
+  std::vector<RawTet> tets;
+  for (const Group& group : physical_groups(3)) {
+    std::vector<std::size_t> tags, corners;
+    elements_of(mesh.file, group, tet_type, tags, corners);
+    const int region = static_cast<int>(mesh.volumes.size());
+    mesh.volumes.push_back(group.name);
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      tets.push_back({tags[i],
+                      {corners[4 * i], corners[4 * i + 1], corners[4 * i + 2], corners[4 * i + 3]},
+                      region});
+  }
+  if (mesh.volumes.empty())
+    throw core::data_error(mesh.file + ": no physical volume (is it a Gmsh mesh with tetrahedra?)");
+  std::sort(tets.begin(), tets.end(),
+            [](const RawTet& a, const RawTet& b) { return a.tag < b.tag; });
+  for (std::size_t i = 1; i < tets.size(); ++i)
+    if (tets[i].tag == tets[i - 1].tag)
+      throw core::data_error(mesh.file + ": tetrahedron " + std::to_string(tets[i].tag) +
+                             " is in two physical volumes, '" +
+                             mesh.volumes[static_cast<std::size_t>(tets[i - 1].region)] +
+                             "' and '" + mesh.volumes[static_cast<std::size_t>(tets[i].region)] +
+                             "'");
+  return tets;
+}
+
+using RowOfTag = std::map<std::size_t, int>;
+
+RowOfTag number_nodes(mesh::Mesh& mesh, const std::vector<RawTet>& tets, double scale)
+{
+  std::set<std::size_t> used;
+  for (const RawTet& tet : tets) used.insert(tet.corner.begin(), tet.corner.end());
+  RowOfTag row_of;
+  for (std::size_t tag : used) {
+    row_of.emplace(tag, static_cast<int>(row_of.size()));
+    mesh.node_tag.push_back(static_cast<long long>(tag));
+  }
+  std::vector<std::size_t> tags;
+  std::vector<double> xyz, parametric;
+  gmsh::model::mesh::getNodes(tags, xyz, parametric);
+  mesh.x.assign(used.size(), mesh::Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const auto row = row_of.find(tags[i]);
+    if (row != row_of.end())
+      mesh.x[static_cast<std::size_t>(row->second)] =
+          scale * Eigen::Map<const mesh::Vec3>(&xyz[3 * i]);
+  }
+  return row_of;
+}
+
+void read_surfaces(mesh::Mesh& mesh, const RowOfTag& row_of)
+{
+  for (const Group& group : physical_groups(2)) {
+    std::vector<std::size_t> tags, corners;
+    elements_of(mesh.file, group, triangle_type, tags, corners);
+    mesh::SurfaceGroup surface{group.name, {}};
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      mesh::Face face;
+      bool known = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto row = row_of.find(corners[3 * i + a]);
+        known = known && row != row_of.end();
+        if (known) face[a] = row->second;
+      }
+      if (!known)
+        throw core::data_error(mesh.file + ": triangle " + std::to_string(tags[i]) +
+                               " of surface '" + group.name + "' is not on any tetrahedron");
+      surface.faces.push_back(face);
+    }
+    mesh.surfaces.push_back(std::move(surface));
+  }
+}
+
+void read_points(mesh::Mesh& mesh, const RowOfTag& row_of)
+{
+  for (const Group& group : physical_groups(0)) {
+    std::vector<std::size_t> tags, corners;
+    elements_of(mesh.file, group, point_type, tags, corners);
+    mesh::PointGroup points{group.name, {}};
+    for (std::size_t tag : corners) {
+      const auto row = row_of.find(tag);
+      if (row != row_of.end()) points.nodes.push_back(row->second);
+    }
+    std::sort(points.nodes.begin(), points.nodes.end());
+    mesh.points.push_back(std::move(points));
+  }
+}
+
+void read_on_root(mesh::Mesh& mesh, double scale)
+{
+  std::ifstream probe(mesh.file, std::ios::binary);
+  if (!probe)
+    throw core::data_error(mesh.file +
+                           ": no such mesh file (scripts/build makes those of meshes/)");
+  if (probe.peek() == std::ifstream::traits_type::eof())
+    throw core::data_error(mesh.file + ": the mesh file is empty");
+  mesh.hash = file_hash(mesh.file);
+  const GmshSession session;
+  // Gmsh 4.8 throws std::string, which no handler of std::exception sees.
+  try {
+    gmsh::open(mesh.file);
+    const std::vector<RawTet> tets = read_tets(mesh);
+    const RowOfTag row_of = number_nodes(mesh, tets, scale);
+    for (const RawTet& tet : tets) {
+      mesh::Tet corners;
+      for (std::size_t a = 0; a < 4; ++a) corners[a] = row_of.at(tet.corner[a]);
+      mesh.tets.push_back(corners);
+      mesh.region.push_back(tet.region);
+      mesh.elem_tag.push_back(static_cast<long long>(tet.tag));
+    }
+    read_surfaces(mesh, row_of);
+    read_points(mesh, row_of);
+  } catch (const std::string& message) {
+    throw core::data_error(mesh.file + ": Gmsh cannot read it: " + message);
+  }
+  mesh::validate(mesh);
+}
+
+}  // namespace
+
+mesh::Mesh read_gmsh(const std::string& file, double scale, const base::Comm& comm)
+{
+  mesh::Mesh mesh;
+  mesh.file = file;
+  base::on_root(comm, [&] { read_on_root(mesh, scale); });
+  mesh::broadcast(mesh, comm);
+  return mesh;
+}
+
+}  // namespace trocar::io

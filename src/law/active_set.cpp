@@ -1,0 +1,129 @@
+#include <cmath>
+#include <limits>
+
+#include "law/box_qp.hpp"
+
+namespace trocar::law {
+namespace {
+
+double energy(const MatX& S, const VecX& s, const VecX& x)
+{
+  return x.dot(0.5 * (S * x) + s);
+}
+
+/// Minimiser over the free rows with the others held; LDLT takes over when Cholesky meets a
+/// vanishing pivot.
+VecX minimise_free(const MatX& S, const VecX& s, const VecX& x, const std::vector<int>& free)
+{
+  VecX held = x;
+  for (int i : free) held[i] = 0.0;
+  const VecX rhs = -(s + S * held)(free);
+  const MatX S_ff = S(free, free);
+  VecX y = x;
+  const Eigen::LLT<MatX> cholesky(S_ff);
+  if (cholesky.info() == Eigen::Success)
+    y(free) = cholesky.solve(rhs).eval();
+  else
+    y(free) = S_ff.completeOrthogonalDecomposition().solve(rhs).eval();
+  return y;
+}
+
+/// One active-set iteration's state.
+struct Walk
+{
+  VecX x;
+  std::vector<bool> free;
+  bool cautious = false;  ///< single changes only, after a set failed to lower the energy
+};
+
+/// Goes from x towards the free minimiser y, which leaves the box.
+void stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, Walk& walk)
+{
+  double fraction = std::numeric_limits<double>::infinity();
+  int first = -1;
+  for (int i = 0; i < static_cast<int>(y.size()); ++i) {
+    if (!walk.free[static_cast<std::size_t>(i)] || std::abs(y[i]) <= F[i]) continue;
+    const double bound = y[i] > walk.x[i] ? F[i] : -F[i];
+    const double reach = (bound - walk.x[i]) / (y[i] - walk.x[i]);
+    if (reach < fraction) {
+      fraction = reach;
+      first = i;
+    }
+  }
+  VecX met = walk.x + fraction * (y - walk.x);
+  met[first] = y[first] > walk.x[first] ? F[first] : -F[first];
+  const VecX projected = y.cwiseMax(-F).cwiseMin(F);
+  if (!walk.cautious && energy(S, s, projected) <= energy(S, s, met)) {
+    walk.x = projected;
+    for (int i = 0; i < static_cast<int>(y.size()); ++i)
+      if (std::abs(walk.x[i]) >= F[i]) walk.free[static_cast<std::size_t>(i)] = false;
+  } else {
+    walk.x = met;
+    walk.free[static_cast<std::size_t>(first)] = false;
+  }
+}
+
+/// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal.
+bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Walk& walk)
+{
+  const VecX gradient = S * walk.x + s;
+  std::vector<int> wrong;
+  int worst = -1;
+  double largest = 0.0;
+  for (int i = 0; i < static_cast<int>(s.size()); ++i) {
+    if (walk.free[static_cast<std::size_t>(i)]) continue;
+    const double inward = walk.x[i] >= F[i] ? gradient[i] : -gradient[i];
+    if (inward <= tolerance) continue;
+    wrong.push_back(i);
+    if (inward / S(i, i) > largest) {
+      largest = inward / S(i, i);
+      worst = i;
+    }
+  }
+  if (wrong.empty()) return false;
+  if (walk.cautious)
+    walk.free[static_cast<std::size_t>(worst)] = true;
+  else
+    for (int i : wrong) walk.free[static_cast<std::size_t>(i)] = true;
+  return true;
+}
+
+}  // namespace
+
+BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
+                       int max_iterations)
+{
+  BoxSolution result;
+  Walk walk{start, std::vector<bool>(static_cast<std::size_t>(s.size())), false};
+  for (int i = 0; i < static_cast<int>(s.size()); ++i)
+    walk.free[static_cast<std::size_t>(i)] = std::abs(start[i]) < F[i];
+  const double tolerance = 1e-13 * (s.cwiseAbs().maxCoeff() + (S * F).cwiseAbs().maxCoeff());
+  double best = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < max_iterations; ++k) {
+    std::vector<int> free;
+    for (int i = 0; i < static_cast<int>(s.size()); ++i)
+      if (walk.free[static_cast<std::size_t>(i)]) free.push_back(i);
+    if (!free.empty()) {
+      const VecX y = minimise_free(S, s, walk.x, free);
+      ++result.factorisations;
+      bool leaves = false;
+      for (int i : free) leaves = leaves || std::abs(y[i]) > F[i];
+      if (leaves) {
+        stop_at_bounds(S, s, F, y, walk);
+        continue;
+      }
+      walk.x = y;
+    }
+    const double now = energy(S, s, walk.x);
+    if (now >= best - 1e-15 * std::abs(best)) walk.cautious = true;
+    best = std::min(best, now);
+    if (!release(S, s, F, tolerance, walk)) {
+      result.finished = true;
+      break;
+    }
+  }
+  result.x = walk.x;
+  return result;
+}
+
+}  // namespace trocar::law

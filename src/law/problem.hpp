@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/math.hpp"
+
+namespace trocar::law {
+
+using core::MatX;
+using core::VecX;
+
+/// The law of one constraint row.
+enum class RowKind : std::uint8_t {
+  bilateral,  ///< δ = 0, λ free
+  box         ///< |λ| <= F;  stick: δ = 0;  slip: λ = -F sign(δ)
+};
+
+/// The dense problem  δ = W λ + g, (δ, λ) in every row's law  (DESIGN eq., paper eq. 3).
+/// With fixed bounds it is the optimality system of min ½ λᵀWλ + gᵀλ over the box.
+struct Problem
+{
+  MatX W;                     ///< compliance (rows x rows) [m/N], symmetric positive semidefinite
+  VecX g;                     ///< violation after free motion (rows) [m]
+  std::vector<RowKind> kind;  ///< per row
+  VecX bound;                 ///< F >= 0 (rows) [N]; ignored on bilateral rows
+  std::vector<int> group;     ///< coupling point of each row, ascending: PGS solves them together
+  VecX start;                 ///< multipliers to start from (rows) [N]
+
+  Eigen::Index rows() const { return g.size(); }
+};
+
+enum class Method { automatic, pgs, hybrid, active_set, interior_point };
+
+/// What the iterative methods stop on. The residual is true, the step norm is the paper's.
+enum class Norm { residual, step };
+
+struct Settings
+{
+  Method method = Method::automatic;
+  Norm norm = Norm::residual;
+  double tolerance = 1e-9;  ///< [m]
+  int max_iterations = 1000;
+};
+
+/// The solution, and how good it is.
+struct Multipliers
+{
+  VecX lambda;  ///< (rows) [N]
+  VecX delta;   ///< W λ + g (rows) [m]
+  bool converged = false;
+  std::string why;         ///< when not converged: one line for the log
+  int iterations = 0;      ///< sweeps, or factorisations with those of a fallback included
+  double residual = 0.0;   ///< true KKT residual [m], see `kkt_residual`
+  int rank = 0;            ///< numerical rank of W
+  bool nonunique = false;  ///< single λ are not unique (δ, forces and work are)
+};
+
+/// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
+/// zero exactly at a solution. Rows with W_ii = 0 cannot move and do not count.
+double kkt_residual(const Problem& problem, const VecX& lambda);
+
+/// Numerical rank of a symmetric positive semidefinite matrix and a set of `rank` well-conditioned
+/// rows of it (ascending), by Cholesky with diagonal pivoting; pivots below `cut` times the largest
+/// diagonal entry end it.
+struct RankReveal
+{
+  int rank = 0;
+  std::vector<int> rows;
+};
+RankReveal reveal_rank(MatX matrix, double cut = 1e-10);
+
+}  // namespace trocar::law

@@ -1,0 +1,10 @@
+#include "driver/program.hpp"
+
+int main(int argc, char** argv)
+{
+  if (trocar::driver::answer_questions(argc, argv)) return 0;
+  if (MPI_Init(&argc, &argv) != MPI_SUCCESS) return 1;
+  const int code = trocar::driver::run_program(argc, argv, MPI_COMM_WORLD);
+  MPI_Finalize();
+  return code;
+}

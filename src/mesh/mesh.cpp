@@ -1,0 +1,184 @@
+#include "mesh/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/words.hpp"
+
+namespace trocar::mesh {
+namespace {
+
+constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges{
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+std::vector<std::string> surface_names(const Mesh& mesh)
+{
+  std::vector<std::string> names;
+  for (const SurfaceGroup& group : mesh.surfaces) names.push_back(group.name);
+  return names;
+}
+
+template <class Array>
+void broadcast_rows(std::vector<Array>& rows, const base::Comm& comm)
+{
+  std::vector<int> flat;
+  for (const Array& row : rows) flat.insert(flat.end(), row.begin(), row.end());
+  comm.broadcast(flat);
+  const std::size_t width = Array().size();
+  rows.resize(flat.size() / width);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    std::copy_n(flat.begin() + static_cast<std::ptrdiff_t>(i * width), width, rows[i].begin());
+}
+
+void broadcast_points(std::vector<Vec3>& x, const base::Comm& comm)
+{
+  std::vector<double> flat;
+  for (const Vec3& p : x) flat.insert(flat.end(), p.data(), p.data() + 3);
+  comm.broadcast(flat);
+  x.resize(flat.size() / 3);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = Eigen::Map<const Vec3>(&flat[3 * i]);
+}
+
+}  // namespace
+
+double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  return (b - a).cross(c - a).dot(d - a) / 6.0;
+}
+
+double tet_volume(const Mesh& mesh, int tet)
+{
+  const auto p = corners(mesh, tet);
+  return tet_volume(p[0], p[1], p[2], p[3]);
+}
+
+std::array<Vec3, 4> corners(const Mesh& mesh, int tet)
+{
+  const Tet& t = mesh.tets[static_cast<std::size_t>(tet)];
+  std::array<Vec3, 4> corner;
+  for (std::size_t a = 0; a < 4; ++a) corner[a] = mesh.x[static_cast<std::size_t>(t[a])];
+  return corner;
+}
+
+Eigen::Vector4d barycentric(const std::array<Vec3, 4>& corner, const Vec3& p)
+{
+  core::Mat3 D;
+  for (int a = 0; a < 3; ++a) D.col(a) = corner[static_cast<std::size_t>(a) + 1] - corner[0];
+  const Vec3 b = D.inverse() * (p - corner[0]);
+  return {1.0 - b.sum(), b[0], b[1], b[2]};
+}
+
+double longest_edge(const std::array<Vec3, 4>& corner)
+{
+  double longest = 0.0;
+  for (const auto& [a, b] : tet_edges) longest = std::max(longest, (corner[b] - corner[a]).norm());
+  return longest;
+}
+
+int volume_index(const Mesh& mesh, const std::string& name)
+{
+  const auto found = std::find(mesh.volumes.begin(), mesh.volumes.end(), name);
+  if (found != mesh.volumes.end()) return static_cast<int>(found - mesh.volumes.begin());
+  throw core::data_error(mesh.file + ": no physical volume '" + name + "'" +
+                         core::did_you_mean(name, mesh.volumes));
+}
+
+const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name)
+{
+  for (const SurfaceGroup& group : mesh.surfaces)
+    if (group.name == name) return group;
+  throw core::data_error(mesh.file + ": no physical surface '" + name + "'" +
+                         core::did_you_mean(name, surface_names(mesh)));
+}
+
+std::vector<int> group_nodes(const Mesh& mesh, const std::string& name)
+{
+  for (const PointGroup& group : mesh.points)
+    if (group.name == name) return group.nodes;
+  std::vector<std::string> names = surface_names(mesh);
+  for (const PointGroup& group : mesh.points) names.push_back(group.name);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw core::data_error(mesh.file + ": no physical surface or point '" + name + "'" +
+                           core::did_you_mean(name, names));
+  std::vector<int> nodes;
+  for (const Face& face : surface_group(mesh, name).faces)
+    nodes.insert(nodes.end(), face.begin(), face.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+void broadcast(Mesh& mesh, const base::Comm& comm)
+{
+  comm.broadcast(mesh.file);
+  comm.broadcast(mesh.hash);
+  broadcast_points(mesh.x, comm);
+  broadcast_rows(mesh.tets, comm);
+  comm.broadcast(mesh.region);
+  comm.broadcast(mesh.volumes);
+  comm.broadcast(mesh.node_tag);
+  comm.broadcast(mesh.elem_tag);
+  std::vector<std::string> names = surface_names(mesh);
+  comm.broadcast(names);
+  mesh.surfaces.resize(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    mesh.surfaces[i].name = names[i];
+    broadcast_rows(mesh.surfaces[i].faces, comm);
+  }
+  names.clear();
+  for (const PointGroup& group : mesh.points) names.push_back(group.name);
+  comm.broadcast(names);
+  mesh.points.resize(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    mesh.points[i].name = names[i];
+    comm.broadcast(mesh.points[i].nodes);
+  }
+}
+
+void validate(const Mesh& mesh)
+{
+  if (mesh.tets.empty())
+    throw core::data_error(mesh.file + ": no tetrahedra in any physical volume");
+  for (int i = 0; i < mesh.node_count(); ++i)
+    if (!mesh.x[static_cast<std::size_t>(i)].allFinite())
+      throw core::data_error(mesh.file + ": node " +
+                             std::to_string(mesh.node_tag[static_cast<std::size_t>(i)]) +
+                             " has a coordinate that is not finite");
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const double volume = tet_volume(mesh, t);
+    const double edge = longest_edge(corners(mesh, t));
+    if (volume > 1e-12 * edge * edge * edge) continue;
+    throw core::data_error(
+        mesh.file + ": tetrahedron " + std::to_string(mesh.elem_tag[static_cast<std::size_t>(t)]) +
+        (volume < 0 ? " is inverted" : " is flat") + " (volume " + core::shown(volume) + " m^3)");
+  }
+}
+
+Quality quality(const Mesh& mesh)
+{
+  Quality report;
+  report.smallest = std::numeric_limits<double>::infinity();
+  report.shortest_edge = report.smallest;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const auto p = corners(mesh, t);
+    const double volume = tet_volume(mesh, t);
+    double squares = 0.0;
+    for (const auto& [a, b] : tet_edges) {
+      const double edge = (p[b] - p[a]).norm();
+      squares += edge * edge;
+      report.shortest_edge = std::min(report.shortest_edge, edge);
+      report.longest_edge = std::max(report.longest_edge, edge);
+    }
+    const double q = 6.0 * std::sqrt(2.0) * volume / std::pow(squares / 6.0, 1.5);
+    report.mean += q / mesh.tet_count();
+    report.volume += volume;
+    if (q < report.smallest) {
+      report.smallest = q;
+      report.worst_tag = mesh.elem_tag[static_cast<std::size_t>(t)];
+    }
+  }
+  return report;
+}
+
+}  // namespace trocar::mesh

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/comm.hpp"
+#include "core/math.hpp"
+
+namespace trocar::mesh {
+
+using core::Vec3;
+using Tet = std::array<int, 4>;
+using Face = std::array<int, 3>;
+
+/// A physical group of boundary or interior triangles.
+struct SurfaceGroup
+{
+  std::string name;
+  std::vector<Face> faces;
+};
+
+/// A physical group of points.
+struct PointGroup
+{
+  std::string name;
+  std::vector<int> nodes;
+};
+
+/// The reference mesh, whole and identical on every rank. Fields and matrices are distributed;
+/// the geometry is not: at 1e6 tets it is 40 MB, and the needle path can then be computed by
+/// every rank from the same numbers, without communication and without ties between ranks.
+struct Mesh
+{
+  std::string file;
+  std::string hash;                  ///< FNV-1a of the file's bytes
+  std::vector<Vec3> x;               ///< [m], reference; row i = i-th smallest Gmsh node tag
+  std::vector<Tet> tets;             ///< positively oriented; row i = i-th smallest tet tag
+  std::vector<int> region;           ///< per tet, index into `volumes`
+  std::vector<std::string> volumes;  ///< names of the physical volumes, in tag order
+  std::vector<SurfaceGroup> surfaces;
+  std::vector<PointGroup> points;
+  std::vector<long long> node_tag, elem_tag;
+
+  int node_count() const { return static_cast<int>(x.size()); }
+  int tet_count() const { return static_cast<int>(tets.size()); }
+};
+
+/// Signed volume [m³] of the tet with corners a, b, c, d.
+double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+double tet_volume(const Mesh& mesh, int tet);
+
+/// Barycentric coordinates (sum 1) of p in the tet with the given corners.
+Eigen::Vector4d barycentric(const std::array<Vec3, 4>& corner, const Vec3& p);
+
+std::array<Vec3, 4> corners(const Mesh& mesh, int tet);
+
+/// Longest edge [m].
+double longest_edge(const std::array<Vec3, 4>& corner);
+
+/// Index of a volume by name, or a Failure (65) naming the nearest one.
+int volume_index(const Mesh& mesh, const std::string& name);
+
+/// Nodes of a physical surface or point group, sorted; Failure (65) when there is none.
+std::vector<int> group_nodes(const Mesh& mesh, const std::string& name);
+
+/// The physical surface of that name; Failure (65) naming the nearest one.
+const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name);
+
+/// Root's mesh on every rank. Collective.
+void broadcast(Mesh& mesh, const base::Comm& comm);
+
+/// Refuses what no later stage can use: no tets, non-finite coordinates, flat or inverted tets,
+/// nodes without volume. Throws Failure (65) naming the element tag.
+void validate(const Mesh& mesh);
+
+/// Figures of the quality report. quality = 6√2 V / (rms edge)³, 1 for a regular tet.
+struct Quality
+{
+  double smallest = 0, mean = 0;
+  long long worst_tag = 0;
+  double volume = 0;                           ///< [m³]
+  double shortest_edge = 0, longest_edge = 0;  ///< [m]
+};
+Quality quality(const Mesh& mesh);
+
+}  // namespace trocar::mesh

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "base/comm.hpp"
+#include "mesh/mesh.hpp"
+
+namespace trocar::mesh {
+
+/// Owner rank of every node: METIS k-way partition of the dual graph (tets that share a face),
+/// nodes given to the part METIS assigns them. Parts may be empty on tiny meshes. Collective.
+std::vector<int> partition_nodes(const Mesh& mesh, const base::Comm& comm);
+
+}  // namespace trocar::mesh

@@ -1,0 +1,154 @@
+#include "needle/needle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::needle {
+
+Needle::Needle(NeedleSettings settings)
+    : settings_(std::move(settings)),
+      element_stiffness_(
+          beam_stiffness(settings_.section, settings_.motion.length / settings_.elements))
+{
+}
+
+Shaft Needle::straight(const Pose& base) const
+{
+  Shaft shaft;
+  shaft.length = settings_.motion.length;
+  for (int i = 0; i <= settings_.elements; ++i) {
+    shaft.x.push_back(base.x + i * shaft.length / settings_.elements * base.R.col(0));
+    shaft.R.push_back(base.R);
+  }
+  return shaft;
+}
+
+NeedleState Needle::initial() const
+{
+  const std::vector<Vec3> still(static_cast<std::size_t>(settings_.elements) + 1, Vec3::Zero());
+  return {straight(settings_.motion.at(0.0)), still, still};
+}
+
+NeedleState Needle::predict(const NeedleState& old, double t) const
+{
+  const Pose base = settings_.motion.at(t);
+  NeedleState next = old;
+  if (settings_.model == Model::rigid) {
+    next.shaft = straight(base);
+    return next;
+  }
+  const Mat3 turn = base.R * old.shaft.R.front().transpose();
+  for (std::size_t i = 0; i < old.shaft.x.size(); ++i) {
+    next.shaft.x[i] = base.x + turn * (old.shaft.x[i] - old.shaft.x.front());
+    next.shaft.R[i] = turn * old.shaft.R[i];
+  }
+  next.shaft.R.front() = base.R;
+  return next;
+}
+
+double Needle::nodal_mass(int node) const
+{
+  const double element =
+      settings_.density * settings_.section.area() * settings_.motion.length / settings_.elements;
+  return node == 0 || node == settings_.elements ? 0.5 * element : element;
+}
+
+Mat3 Needle::rotary_inertia(int node, const Mat3& R) const
+{
+  const Section& s = settings_.section;
+  const double l = settings_.motion.length / settings_.elements;
+  const double share = nodal_mass(node) / s.area();
+  // Half an element on each side turns with the node: m l²/12 beside the section's own inertia.
+  const double across = share * s.second_moment() + nodal_mass(node) * l * l / 12.0;
+  const Vec3 axes(share * s.polar_moment(), across, across);
+  return R * axes.asDiagonal() * R.transpose();
+}
+
+Linearised Needle::linearise(const NeedleState& old, const NeedleState& iterate,
+                             const core::TimeStep& step) const
+{
+  Linearised linear;
+  const Shaft& shaft = iterate.shaft;
+  linear.A = MatX::Zero(dofs(), dofs());
+  linear.r = VecX::Zero(dofs());
+  const double inverse_h = step.inverse();
+  for (int i = 0; i <= settings_.elements; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double mass = nodal_mass(i);
+    const Mat3 J = rotary_inertia(i, shaft.R[n]);
+    const Vec3 v = inverse_h * (shaft.x[n] - old.shaft.x[n]);
+    const Vec3 w = inverse_h * core::rotation_log(shaft.R[n] * old.shaft.R[n].transpose());
+    linear.r.segment<3>(6 * i) =
+        step.load * mass * settings_.gravity - mass * inverse_h * (v - old.v[n]);
+    linear.r.segment<3>(6 * i + 3) = -inverse_h * J * (w - old.w[n]);
+    linear.A.block<3, 3>(6 * i, 6 * i).diagonal().array() += mass * inverse_h * inverse_h;
+    linear.A.block<3, 3>(6 * i + 3, 6 * i + 3) += inverse_h * inverse_h * J;
+  }
+  if (settings_.model == Model::rigid) {
+    linear.held = dofs();
+    return linear;
+  }
+  for (int e = 0; e < settings_.elements; ++e) {
+    const auto a = static_cast<std::size_t>(e);
+    const BeamForce beam =
+        corotational_beam(element_stiffness_, shaft.element_length(), {shaft.x[a], shaft.R[a]},
+                          {shaft.x[a + 1], shaft.R[a + 1]});
+    linear.r.segment<12>(6 * e) -= beam.force;
+    linear.A.block<12, 12>(6 * e, 6 * e) += beam.tangent;
+  }
+  const Eigen::Index free = dofs() - linear.held;
+  linear.factor.compute(linear.A.bottomRightCorner(free, free));
+  linear.free_increment = linear.factor.solve(linear.r.tail(free));
+  return linear;
+}
+
+VecX Needle::increment(const Linearised& linear, const VecX& coupling) const
+{
+  VecX d = VecX::Zero(dofs());
+  const Eigen::Index free = dofs() - linear.held;
+  if (free > 0) d.tail(free) = linear.free_increment - linear.factor.solve(coupling.tail(free));
+  return d;
+}
+
+NeedleState Needle::correct(const NeedleState& old, const NeedleState& iterate,
+                            const Linearised& linear, const VecX& coupling,
+                            const core::TimeStep& step) const
+{
+  const VecX d = increment(linear, coupling);
+  NeedleState next = iterate;
+  for (int i = 0; i <= settings_.elements; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    next.shaft.x[n] += d.segment<3>(6 * i);
+    next.shaft.R[n] = core::rotation_exp(d.segment<3>(6 * i + 3)) * next.shaft.R[n];
+    next.v[n] = step.inverse() * (next.shaft.x[n] - old.shaft.x[n]);
+    next.w[n] = step.inverse() * core::rotation_log(next.shaft.R[n] * old.shaft.R[n].transpose());
+  }
+  return next;
+}
+
+double Needle::relative_increment(const Linearised& linear, const VecX& coupling) const
+{
+  const VecX d = increment(linear, coupling);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    largest = std::max(largest, std::abs(d[i]) * (i % 6 < 3 ? 1.0 / settings_.motion.length : 1.0));
+  return largest;
+}
+
+Wrench Needle::base_wrench(const NeedleState& iterate, const Linearised& linear,
+                           const VecX& coupling) const
+{
+  const VecX holder = linear.A * increment(linear, coupling) - linear.r + coupling;
+  Wrench wrench;
+  const auto& x = iterate.shaft.x;
+  // The holder acts on every held node: on all of a rigid needle, on the first of a beam.
+  for (int i = 0; 6 * i < linear.held; ++i) {
+    const Vec3 force = holder.segment<3>(6 * i);
+    wrench.force += force;
+    wrench.moment +=
+        holder.segment<3>(6 * i + 3) + (x[static_cast<std::size_t>(i)] - x.front()).cross(force);
+  }
+  return wrench;
+}
+
+}  // namespace trocar::needle

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/ledger.hpp"
+#include "fem/dirichlet.hpp"
+#include "solve/linear_system.hpp"
+
+namespace trocar::solve {
+
+/// A probe that touches many dofs, such as the volume gradient of a cavity. `id` changes when the
+/// vector does.
+struct WideProbe
+{
+  long long id;
+  OwnedField vector;
+};
+
+/// What a constraint set asks for: whole nodes (three unit dofs each, file numbering, sorted and
+/// unique) and wide vectors. Slots are 3 * nodes, then the wide ones.
+struct Probes
+{
+  std::vector<int> nodes;
+  std::vector<const WideProbe*> wide;
+
+  int size() const { return static_cast<int>(3 * nodes.size() + wide.size()); }
+};
+
+/// How a compliance block was come by, in dofs.
+struct ComplianceReport
+{
+  int probes = 0;        ///< dofs in the block
+  int built = 0;         ///< columns computed for it
+  int reused = 0;        ///< columns served from the cache
+  double seconds = 0.0;  ///< this rank's wall time, factorisation excluded
+};
+
+/// The isolated compliance C = S A⁻¹ Sᵀ [m/N] on the probed dofs; S selects them. Dofs with a
+/// prescribed displacement are never probes: their rows and columns are zero.
+class IsolatedCompliance
+{
+ public:
+  virtual ~IsolatedCompliance() = default;
+  /// C for these probes, equal on every rank. Columns of the current operator version that are
+  /// already known are not computed again. Collective.
+  virtual core::MatX block(const Probes& probes, ComplianceReport& report) = 0;
+};
+
+/// How new columns are computed.
+enum class ColumnSolver {
+  one_by_one,  ///< provider `ksp`: one KSP solve per isolated dof, the paper's route
+  blocked      ///< provider `ksp_block`: KSPMatSolve on up to 64 columns
+};
+
+/// Columns by PETSc KSP on any rank count. Only C is kept, not A⁻¹Sᵀ: a new column read at the old
+/// probes gives, by symmetry, the old columns read at the new probe.
+class KspCompliance final : public IsolatedCompliance
+{
+ public:
+  /// Borrows the system and the fixed set; both must outlive this object.
+  KspCompliance(LinearSystem& system, const fem::Dirichlet& fixed, ColumnSolver solver,
+                core::Ledger& ledger);
+
+  core::MatX block(const Probes& probes, ComplianceReport& report) override;
+
+ private:
+  struct Column
+  {
+    int node = -1;  ///< file node, -1 for a wide probe
+    int axis = 0;
+    const WideProbe* wide = nullptr;  ///< only valid while it is being built
+    bool fixed = false;               ///< zero by definition, never solved for
+  };
+
+  void forget();
+  std::vector<int> slots_of(const Probes& probes, std::vector<int>& missing);
+  void build(const std::vector<int>& missing);
+  core::MatX right_hand_sides(const std::vector<int>& slots) const;
+  core::MatX read_at_probes(const core::MatX& columns) const;
+
+  LinearSystem* system_;
+  const fem::Dirichlet* fixed_;
+  ColumnSolver solver_;
+  core::Ledger* ledger_;
+  int version_ = -1;
+  std::vector<Column> columns_;            ///< by slot
+  std::map<int, int> first_slot_of_node_;  ///< file node -> slot of its x dof
+  std::map<long long, int> slot_of_wide_;
+  std::map<long long, OwnedField> wide_vectors_;  ///< copies: old wide rows meet new columns
+  core::MatX C_;
+};
+
+}  // namespace trocar::solve

@@ -1,0 +1,233 @@
+#include "solve/linear_system.hpp"
+
+#include <cstring>
+
+namespace trocar::solve {
+namespace {
+
+/// A borrowed array dressed as a PETSc vector.
+base::VecHandle wrap(const fem::Space& space, const double* values)
+{
+  base::VecHandle vec;
+  if (space.comm().size() == 1)
+    TROCAR_PETSC(
+        VecCreateSeqWithArray(space.comm().get(), 3, space.owned_dofs(), values, vec.out()));
+  else
+    TROCAR_PETSC(VecCreateMPIWithArray(space.comm().get(), 3, space.owned_dofs(), PETSC_DETERMINE,
+                                       values, vec.out()));
+  return vec;
+}
+
+base::MatHandle wrap(const fem::Space& space, const core::MatX& columns)
+{
+  base::MatHandle mat;
+  // PETSc takes a mutable pointer even for matrices it only reads.
+  TROCAR_PETSC(MatCreateDense(space.comm().get(), space.owned_dofs(), PETSC_DECIDE, PETSC_DETERMINE,
+                              static_cast<PetscInt>(columns.cols()),
+                              const_cast<double*>(columns.data()), mat.out()));
+  return mat;
+}
+
+bool is(const char* type, const char* name)
+{
+  return type && std::strcmp(type, name) == 0;
+}
+
+}  // namespace
+
+LinearSystem::LinearSystem(const fem::Space& space, const fem::BlockPattern& pattern,
+                           const std::vector<core::Vec3>& x, const LinearSettings& settings,
+                           core::Ledger& ledger)
+    : space_(&space), settings_(settings), ledger_(&ledger)
+{
+  for (int local = 0; local < space.owned(); ++local)
+    x_owned_.push_back(x[static_cast<std::size_t>(space.file_node(local))]);
+  create_matrix(pattern);
+  create_solver();
+}
+
+void LinearSystem::create_matrix(const fem::BlockPattern& pattern)
+{
+  std::vector<PetscInt> here, elsewhere;
+  const int end = space_->first() + space_->owned();
+  for (int row = 0; row < space_->owned(); ++row) {
+    PetscInt own = 0, other = 0;
+    for (int k = pattern.row_start()[static_cast<std::size_t>(row)];
+         k < pattern.row_start()[static_cast<std::size_t>(row) + 1]; ++k)
+      ++(pattern.column()[static_cast<std::size_t>(k)] < end ? own : other);
+    here.push_back(own);
+    elsewhere.push_back(other);
+  }
+  TROCAR_PETSC(MatCreate(space_->comm().get(), assembled_.out()));
+  Mat A = assembled_.get();
+  TROCAR_PETSC(
+      MatSetSizes(A, space_->owned_dofs(), space_->owned_dofs(), PETSC_DETERMINE, PETSC_DETERMINE));
+  TROCAR_PETSC(MatSetBlockSize(A, 3));
+  TROCAR_PETSC(MatSetType(A, MATSBAIJ));
+  TROCAR_PETSC(MatSeqSBAIJSetPreallocation(A, 3, 0, here.data()));
+  TROCAR_PETSC(MatMPISBAIJSetPreallocation(A, 3, 0, here.data(), 0, elsewhere.data()));
+  TROCAR_PETSC(MatSetOption(A, MAT_ROW_ORIENTED, PETSC_FALSE));
+  TROCAR_PETSC(MatSetOption(A, MAT_SPD, PETSC_TRUE));
+}
+
+void LinearSystem::create_solver()
+{
+  TROCAR_PETSC(KSPCreate(space_->comm().get(), ksp_.out()));
+  KSP ksp = ksp_.get();
+  TROCAR_PETSC(KSPSetOptionsPrefix(ksp, settings_.prefix.c_str()));
+  TROCAR_PETSC(KSPSetType(ksp, KSPPREONLY));
+  TROCAR_PETSC(KSPSetTolerances(ksp, 1e-12, 0.0, PETSC_DEFAULT, 10000));
+  PC pc = nullptr;
+  TROCAR_PETSC(KSPGetPC(ksp, &pc));
+  TROCAR_PETSC(PCSetType(pc, PCCHOLESKY));
+  TROCAR_PETSC(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  TROCAR_PETSC(KSPSetFromOptions(ksp));
+
+  PetscBool ksp_given = PETSC_FALSE;
+  TROCAR_PETSC(PetscOptionsHasName(nullptr, settings_.prefix.c_str(), "-ksp_type", &ksp_given));
+  KSPType type = nullptr;
+  TROCAR_PETSC(KSPGetType(ksp, &type));
+  PCType pc_type = nullptr;
+  TROCAR_PETSC(PCGetType(pc, &pc_type));
+  const bool factored = is(pc_type, PCCHOLESKY) || is(pc_type, PCLU);
+  // Asking only for a preconditioner must not turn it into the whole solve.
+  if (is(type, KSPPREONLY) && !factored) {
+    if (ksp_given)
+      throw core::option_error("option -" + settings_.prefix + "ksp_type preonly: '" +
+                               std::string(pc_type) + "' is no direct solver");
+    TROCAR_PETSC(KSPSetType(ksp, KSPCG));
+    TROCAR_PETSC(KSPSetFromOptions(ksp));
+  }
+  MatSolverType package = nullptr;
+  if (factored) TROCAR_PETSC(PCFactorGetMatSolverType(pc, &package));
+  needs_aij_ = !(is(pc_type, PCCHOLESKY) && is(package, MATSOLVERMUMPS)) &&
+               !is(pc_type, PCJACOBI) && !is(pc_type, PCNONE);
+}
+
+void LinearSystem::attach_near_null_space(Mat matrix)
+{
+  if (!rigid_modes_) {
+    base::VecHandle coordinates = wrap(*space_, x_owned_.empty() ? nullptr : x_owned_[0].data());
+    TROCAR_PETSC(MatNullSpaceCreateRigidBody(coordinates.get(), rigid_modes_.out()));
+  }
+  TROCAR_PETSC(MatSetNearNullSpace(matrix, rigid_modes_.get()));
+}
+
+void LinearSystem::raise_mumps_workspace(PC pc)
+{
+  PCType pc_type = nullptr;
+  TROCAR_PETSC(PCGetType(pc, &pc_type));
+  if (!is(pc_type, PCCHOLESKY) && !is(pc_type, PCLU)) return;
+  MatSolverType package = nullptr;
+  TROCAR_PETSC(PCFactorGetMatSolverType(pc, &package));
+  if (!is(package, MATSOLVERMUMPS)) return;
+  TROCAR_PETSC(PCFactorSetUpMatSolverType(pc));
+  Mat factor = nullptr;
+  TROCAR_PETSC(PCFactorGetMatrix(pc, &factor));
+  // Delayed pivots make MUMPS's own estimate too small now and then (its error -9).
+  TROCAR_PETSC(MatMumpsSetIcntl(factor, 14, 60));
+}
+
+void LinearSystem::set_operator(const fem::BlockMatrix& values)
+{
+  const fem::BlockPattern& pattern = values.pattern();
+  Mat A = assembled_.get();
+  for (int row = 0; row < space_->owned(); ++row) {
+    const auto begin = static_cast<std::size_t>(pattern.row_start()[static_cast<std::size_t>(row)]);
+    const auto end =
+        static_cast<std::size_t>(pattern.row_start()[static_cast<std::size_t>(row) + 1]);
+    const PetscInt number = space_->first() + row;
+    TROCAR_PETSC(MatSetValuesBlocked(A, 1, &number, static_cast<PetscInt>(end - begin),
+                                     &pattern.column()[begin], &values.values()[9 * begin],
+                                     INSERT_VALUES));
+  }
+  TROCAR_PETSC(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  TROCAR_PETSC(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  if (needs_aij_) {
+    Mat copy = converted_.get();
+    if (copy) {
+      TROCAR_PETSC(MatConvert(A, MATAIJ, MAT_REUSE_MATRIX, &copy));
+    } else {
+      TROCAR_PETSC(MatConvert(A, MATAIJ, MAT_INITIAL_MATRIX, converted_.out()));
+      TROCAR_PETSC(MatSetOption(converted_.get(), MAT_SPD, PETSC_TRUE));
+    }
+    A = converted_.get();
+  }
+  attach_near_null_space(A);
+  TROCAR_PETSC(KSPSetOperators(ksp_.get(), A, A));
+  PC pc = nullptr;
+  TROCAR_PETSC(KSPGetPC(ksp_.get(), &pc));
+  if (version_ == 0) raise_mumps_workspace(pc);
+  TROCAR_PETSC(KSPSetUp(ksp_.get()));
+  ++version_;
+  ++ledger_->factorisations;
+  PCFailedReason failed = PC_NOERROR;
+  TROCAR_PETSC(PCGetFailedReason(pc, &failed));
+  if (!space_->comm().all(failed == PC_NOERROR))
+    throw core::solver_error(
+        "the tissue operator could not be factored: it is singular or not "
+        "positive definite (are the supports sufficient?)");
+}
+
+void LinearSystem::check_converged(const char* what) const
+{
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  TROCAR_PETSC(KSPGetConvergedReason(ksp_.get(), &reason));
+  if (reason > 0) return;
+  PetscInt iterations = 0;
+  TROCAR_PETSC(KSPGetIterationNumber(ksp_.get(), &iterations));
+  throw core::solver_error(std::string(what) + ": the linear solver (" + describe() +
+                           ") did not converge: " + KSPConvergedReasons[reason] + " after " +
+                           std::to_string(iterations) + " iterations");
+}
+
+OwnedField LinearSystem::solve(const OwnedField& b)
+{
+  OwnedField x = space_->zero();
+  const base::VecHandle rhs = wrap(*space_, b.value.data());
+  const base::VecHandle solution = wrap(*space_, x.value.data());
+  TROCAR_PETSC(KSPSolve(ksp_.get(), rhs.get(), solution.get()));
+  ++ledger_->solves;
+  check_converged("tissue solve");
+  return x;
+}
+
+core::MatX LinearSystem::solve_block(const core::MatX& rhs)
+{
+  core::MatX x = core::MatX::Zero(rhs.rows(), rhs.cols());
+  const base::MatHandle B = wrap(*space_, rhs);
+  const base::MatHandle X = wrap(*space_, x);
+  for (const base::MatHandle* mat : {&B, &X}) {
+    TROCAR_PETSC(MatAssemblyBegin(mat->get(), MAT_FINAL_ASSEMBLY));
+    TROCAR_PETSC(MatAssemblyEnd(mat->get(), MAT_FINAL_ASSEMBLY));
+  }
+  TROCAR_PETSC(KSPMatSolve(ksp_.get(), B.get(), X.get()));
+  check_converged("compliance columns");
+  return x;
+}
+
+bool LinearSystem::direct() const
+{
+  KSPType type = nullptr;
+  TROCAR_PETSC(KSPGetType(ksp_.get(), &type));
+  return is(type, KSPPREONLY);
+}
+
+std::string LinearSystem::describe() const
+{
+  KSPType type = nullptr;
+  TROCAR_PETSC(KSPGetType(ksp_.get(), &type));
+  PC pc = nullptr;
+  TROCAR_PETSC(KSPGetPC(ksp_.get(), &pc));
+  PCType pc_type = nullptr;
+  TROCAR_PETSC(PCGetType(pc, &pc_type));
+  std::string text = std::string(type) + " + " + pc_type;
+  if (is(pc_type, PCCHOLESKY) || is(pc_type, PCLU)) {
+    MatSolverType package = nullptr;
+    TROCAR_PETSC(PCFactorGetMatSolverType(pc, &package));
+    if (package) text += " (" + std::string(package) + ")";
+  }
+  return text;
+}
+
+}  // namespace trocar::solve

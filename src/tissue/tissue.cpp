@@ -1,0 +1,244 @@
+#include "tissue/tissue.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::tissue {
+namespace {
+
+using Nodal = Eigen::Matrix<double, 3, 4>;
+
+Nodal nodal_values(const fem::GhostedField& field, const fem::Space::LocalTet& tet)
+{
+  Nodal values;
+  for (int a = 0; a < 4; ++a) values.col(a) = field.node(tet.nodes[static_cast<std::size_t>(a)]);
+  return values;
+}
+
+/// Adds the element's nodal vectors to the nodes owned here; the others' owners add their own.
+void scatter(const Nodal& element, const fem::Space::LocalTet& tet, OwnedField& field)
+{
+  for (int a = 0; a < 4; ++a) {
+    const int node = tet.nodes[static_cast<std::size_t>(a)];
+    if (3 * node < field.value.size()) field.node(node) += element.col(a);
+  }
+}
+
+/// M w of one tet [kg · unit of w].
+Nodal mass_times(const Nodal& w, double mass, Mass kind)
+{
+  if (kind == Mass::lumped) return mass / 4.0 * w;
+  return mass / 20.0 * (w.colwise() + w.rowwise().sum().eval());
+}
+
+}  // namespace
+
+Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
+               core::Ledger& ledger)
+    : mesh_(&mesh),
+      space_(&space),
+      settings_(std::move(settings)),
+      ledger_(&ledger),
+      fixed_(dirichlet_set(settings_.boundary, mesh, space)),
+      pattern_(space),
+      values_(pattern_),
+      weight_(space.zero())
+{
+  for (const auto& tet : space.tets()) {
+    const Element element{fem::tet_shape(mesh::corners(mesh, tet.file_tet)),
+                          mesh.region[static_cast<std::size_t>(tet.file_tet)]};
+    const Material& m = settings_.materials[static_cast<std::size_t>(element.region)];
+    const Vec3 share = m.density * element.shape.volume / 4.0 * settings_.boundary.gravity;
+    scatter(share.replicate<1, 4>(), tet, weight_);
+    elements_.push_back(element);
+  }
+  for (const Traction& traction : settings_.boundary.tractions)
+    traction_.push_back(
+        traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
+}
+
+bool Tissue::rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const
+{
+  R.assign(elements_.size(), Mat3::Identity());
+  if (settings_.model == Model::linear) return true;
+  bool upright = true;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Mat3 F =
+        Mat3::Identity() + nodal_gradient(elements_[e].shape, nodal_values(u, space_->tets()[e]));
+    if (F.determinant() > 0.0)
+      R[e] = core::polar_rotation(F);
+    else
+      upright = false;
+  }
+  return space_->comm().all(upright);
+}
+
+void Tissue::assemble(const std::vector<Mat3>& R, double inverse_h)
+{
+  values_.set_zero();
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Material& m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
+    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
+    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h;
+    values_.add(e, operator_blocks(m, elements_[e].shape, R[e], scale_k, scale_m,
+                                   settings_.mass == Mass::lumped));
+  }
+  values_.fix(*space_, fixed_);
+  ++ledger_->assemblies;
+}
+
+void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
+{
+  const double inverse_h = step.inverse();
+  const bool linear = settings_.model == Model::linear;
+  const auto known = std::find_if(operators_.begin(), operators_.end(), [&](const Operator& o) {
+    return !linear || o.inverse_h == inverse_h;
+  });
+  if (known != operators_.end()) {
+    current_ = &*known;
+    const bool same = current_->inverse_h == inverse_h && (linear || current_->R == R);
+    if (space_->comm().all(same)) return;
+  } else {
+    Operator fresh;
+    fresh.system = std::make_unique<solve::LinearSystem>(*space_, pattern_, mesh_->x,
+                                                         settings_.linear, *ledger_);
+    fresh.compliance =
+        std::make_unique<solve::KspCompliance>(*fresh.system, fixed_, settings_.columns, *ledger_);
+    operators_.push_back(std::move(fresh));
+    current_ = &operators_.back();
+  }
+  current_->inverse_h = inverse_h;
+  if (!linear) current_->R = R;
+  assemble(R, inverse_h);
+  current_->system->set_operator(values_);
+}
+
+OwnedField Tissue::external(const TimeStep& step) const
+{
+  OwnedField f{step.load * weight_.value};
+  for (std::size_t i = 0; i < traction_.size(); ++i)
+    f.value +=
+        step.load * load_factor(settings_.boundary.tractions[i].curve, step.t) * traction_[i].value;
+  return f;
+}
+
+OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
+                          const TimeStep& step, double* scale) const
+{
+  const double inverse_h = step.inverse();
+  const OwnedField rate{(u.value - old.u.value) * inverse_h};
+  const OwnedField acceleration{(rate.value - old.v.value) * inverse_h};
+  const auto u_g = space_->with_ghosts(u);
+  const auto rate_g = space_->with_ghosts(rate);
+  const auto acceleration_g = space_->with_ghosts(acceleration);
+  OwnedField internal = space_->zero(), inertia = space_->zero();
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const auto& tet = space_->tets()[e];
+    const fem::TetShape& shape = elements_[e].shape;
+    const Material& m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
+    const Nodal velocity = nodal_values(rate_g, tet);
+    const Mat3 F = Mat3::Identity() + nodal_gradient(shape, nodal_values(u_g, tet));
+    const Mat3 P = stress(m, R[e], F, nodal_gradient(shape, velocity));
+    scatter(shape.volume * P * shape.gradient, tet, internal);
+    if (step.is_static) continue;
+    const Nodal w = nodal_values(acceleration_g, tet) + m.rayleigh_mass * velocity;
+    scatter(mass_times(w, m.density * shape.volume, settings_.mass), tet, inertia);
+  }
+  const OwnedField load = external(step);
+  if (scale) *scale = space_->norm(load) + space_->norm(internal) + space_->norm(inertia);
+  return {load.value - internal.value - inertia.value};
+}
+
+OwnedField Tissue::apply_operator(const OwnedField& d, const std::vector<Mat3>& R,
+                                  double inverse_h) const
+{
+  const auto d_g = space_->with_ghosts(d);
+  OwnedField product = space_->zero();
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const auto& tet = space_->tets()[e];
+    const fem::TetShape& shape = elements_[e].shape;
+    Material m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
+    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
+    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h;
+    m.rayleigh_stiffness = 0.0;
+    const Nodal w = nodal_values(d_g, tet);
+    // stress() is affine in F; at F = R + grad d it gives the linear part alone.
+    const Mat3 P = stress(m, R[e], R[e] + nodal_gradient(shape, w), Mat3::Zero());
+    scatter(scale_k * shape.volume * P * shape.gradient +
+                mass_times(w, scale_m * m.density * shape.volume, settings_.mass),
+            tet, product);
+  }
+  return product;
+}
+
+FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
+                               const TimeStep& step)
+{
+  std::vector<Mat3> R;
+  if (!rotations(space_->with_ghosts(iterate), R))
+    return {space_->zero(), "an element of the tissue turned inside out"};
+  use_operator(R, step);
+  OwnedField r = forces(old, iterate, R, step, nullptr);
+
+  OwnedField prescribed = space_->zero();
+  const OwnedField target = prescribed_displacement(settings_.boundary, *mesh_, *space_, step.t);
+  for (int local = 0; local < space_->owned(); ++local) {
+    const unsigned axes = fixed_.axes_of_number(space_->first() + local);
+    for (int a = 0; a < 3; ++a)
+      if (axes >> a & 1U)
+        prescribed.value[3 * local + a] =
+            step.load * target.value[3 * local + a] - iterate.value[3 * local + a];
+  }
+  const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
+  if (moves) r.value -= apply_operator(prescribed, R, step.inverse()).value;
+  fixed_.clear(r);
+  FreeMotion motion{current_->system->solve(r), std::nullopt};
+  fixed_.clear(motion.increment);
+  if (moves) motion.increment.value += prescribed.value;
+  if (!space_->comm().all(motion.increment.value.allFinite()))
+    motion.trouble = "the free motion of the tissue is not finite";
+  return motion;
+}
+
+OwnedField Tissue::respond(const OwnedField& forces)
+{
+  OwnedField f = forces;
+  fixed_.clear(f);
+  OwnedField u = current_->system->solve(f);
+  fixed_.clear(u);
+  return u;
+}
+
+OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
+                            double& scale) const
+{
+  std::vector<Mat3> R;
+  rotations(space_->with_ghosts(u), R);
+  OwnedField r = forces(old, u, R, step, &scale);
+  fixed_.clear(r);
+  return r;
+}
+
+Vec3 Tissue::support_force(const TissueState& old, const OwnedField& u, const TimeStep& step) const
+{
+  std::vector<Mat3> R;
+  rotations(space_->with_ghosts(u), R);
+  const fem::GlobalField r = space_->gather(forces(old, u, R, step, nullptr));
+  Vec3 sum = Vec3::Zero();
+  for (int node = 0; node < space_->global(); ++node)
+    for (int a = 0; a < 3; ++a)
+      if (fixed_.fixed(node, a)) sum[a] -= r.node(node)[a];
+  return sum;
+}
+
+std::string Tissue::describe_solver() const
+{
+  return current_->system->describe();
+}
+
+void Tissue::prepare(const TimeStep& step)
+{
+  use_operator(std::vector<Mat3>(elements_.size(), Mat3::Identity()), step);
+}
+
+}  // namespace trocar::tissue

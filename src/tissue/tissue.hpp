@@ -1,0 +1,122 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/time_step.hpp"
+#include "mesh/mesh.hpp"
+#include "solve/isolated_compliance.hpp"
+#include "tissue/boundary.hpp"
+#include "tissue/elastic.hpp"
+
+namespace trocar::tissue {
+
+using core::TimeStep;
+using fem::OwnedField;
+
+enum class Model { linear, corotational };
+enum class Mass { consistent, lumped };
+
+struct TissueSettings
+{
+  Model model = Model::corotational;
+  Mass mass = Mass::consistent;
+  std::vector<Material> materials;  ///< by volume of the mesh
+  BoundaryConditions boundary;
+  solve::LinearSettings linear;
+  solve::ColumnSolver columns = solve::ColumnSolver::blocked;
+};
+
+/// Displacement and velocity of every owned node. A value.
+struct TissueState
+{
+  OwnedField u;  ///< [m]
+  OwnedField v;  ///< [m/s]
+};
+
+/// Answer of the tissue alone to one linearisation: u_free = iterate + increment.
+struct FreeMotion
+{
+  OwnedField increment;                ///< [m]
+  std::optional<std::string> trouble;  ///< why the step cannot be taken; equal on all ranks
+};
+
+/// The deformable bodies: one or more volumes of the mesh in one operator
+///   A = M/h² + B/h + K,  B = αM + βK   (static: A = K)    [N/m].
+class Tissue
+{
+ public:
+  /// Borrows mesh, space and ledger. Collective.
+  Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
+         core::Ledger& ledger);
+
+  TissueState at_rest() const { return {space_->zero(), space_->zero()}; }
+
+  /// Linearises at `iterate` within the step that began at `old` and solves for the motion without
+  /// constraints. Linear tissue keeps one assembled and factored operator per distinct h.
+  /// Collective.
+  FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step);
+
+  /// A⁻¹ f for nodal forces f [N] with the operator of the last `free_motion`. Collective.
+  OwnedField respond(const OwnedField& forces);
+
+  /// r = f_ext - f_int(u) - M(Δu/h - v)/h - BΔu/h [N] on free dofs, and the size of its terms.
+  /// `scale` gets ‖f_ext‖ + ‖f_int‖ + ‖inertia‖. Collective.
+  OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
+                      double& scale) const;
+
+  /// The compliance that belongs to the operator of the last `free_motion`.
+  solve::IsolatedCompliance& compliance() { return *current_->compliance; }
+
+  const fem::Dirichlet& fixed() const { return fixed_; }
+  const mesh::Mesh& mesh() const { return *mesh_; }
+  const fem::Space& space() const { return *space_; }
+  std::string describe_solver() const;
+  /// Builds and factors the operator of a step from rest, so that `-check` can stop. Collective.
+  void prepare(const TimeStep& step);
+
+  /// Sum over free nodes of external, internal and inertial nodal forces of a step [N]: what the
+  /// needle must have put in, minus what the supports took. Reported, hence in global order.
+  Vec3 support_force(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
+
+ private:
+  struct Element
+  {
+    fem::TetShape shape;
+    int region;
+  };
+  struct Operator
+  {
+    double inverse_h = -1.0;
+    std::vector<Mat3> R;  ///< rotations it was assembled with; empty for linear tissue
+    std::unique_ptr<solve::LinearSystem> system;
+    std::unique_ptr<solve::IsolatedCompliance> compliance;
+  };
+
+  bool rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const;
+  void use_operator(const std::vector<Mat3>& R, const TimeStep& step);
+  void assemble(const std::vector<Mat3>& R, double inverse_h);
+  OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
+                    const TimeStep& step, double* scale) const;
+  OwnedField external(const TimeStep& step) const;
+  OwnedField apply_operator(const OwnedField& d, const std::vector<Mat3>& R,
+                            double inverse_h) const;
+
+  const mesh::Mesh* mesh_;
+  const fem::Space* space_;
+  TissueSettings settings_;
+  core::Ledger* ledger_;
+  fem::Dirichlet fixed_;
+  fem::BlockPattern pattern_;
+  fem::BlockMatrix values_;
+  std::vector<Element> elements_;  ///< by local tet
+  OwnedField weight_;              ///< ρ g V/4 per node [N]
+  std::vector<OwnedField> traction_;
+  /// One per distinct h for linear tissue. Else one, filled again when h or any rotation changes.
+  std::vector<Operator> operators_;
+  Operator* current_ = nullptr;
+};
+
+}  // namespace trocar::tissue
