@@ -36,6 +36,7 @@ Condensed::Condensed(const Problem& problem) : problem_(&problem), rows_(split_r
   S_ = 0.5 * (S_ + S_.transpose()).eval();
   s_ = problem.g(rows_.box) - Z.transpose() * problem.g(kept_);
   bound_ = problem.bound(rows_.box);
+  if (!rows_.box.empty()) box_scale_ = problem.W.diagonal()(rows_.box).maxCoeff();
   start_ = problem.start(rows_.box).cwiseMax(-bound_).cwiseMin(bound_);
 }
 

@@ -29,6 +29,8 @@ class Condensed
   const VecX& s() const { return s_; }          ///< [m]
   const VecX& bound() const { return bound_; }  ///< [N]
   VecX start() const { return start_; }         ///< box multipliers to start from [N]
+  /// Rank of S, measured against the W_ff it was made from.
+  int box_rank() const { return reveal_rank(S_, box_scale_).rank; }
   int bilateral_rank() const { return bilateral_rank_; }
   bool bilateral_redundant() const { return redundant_; }
 
@@ -45,6 +47,7 @@ class Condensed
   Eigen::LLT<MatX> W_kept_;
   MatX S_;
   VecX s_, bound_, start_;
+  double box_scale_ = 0.0;  ///< largest diagonal entry of W_ff [m/N]
   int bilateral_rank_ = 0;
   bool redundant_ = false;
 };

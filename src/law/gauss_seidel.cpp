@@ -40,6 +40,7 @@ VecX solve_group(const Problem& problem, const Group& group, const VecX& lambda,
   for (int i = 0; i < n; ++i)
     if (W(i, i) > 0.0) free.push_back(i);
   const auto solve_free = [&] {
+    if (free.empty()) return;
     const VecX rhs = -(held + W * next)(free);
     next(free) = MatX(W(free, free)).completeOrthogonalDecomposition().solve(rhs).eval();
   };

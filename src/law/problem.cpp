@@ -24,12 +24,12 @@ double kkt_residual(const Problem& problem, const VecX& lambda)
   return worst;
 }
 
-RankReveal reveal_rank(MatX matrix, double cut)
+RankReveal reveal_rank(MatX matrix, double scale, double cut)
 {
   const Eigen::Index n = matrix.rows();
   RankReveal result;
   if (n == 0) return result;
-  const double stop = cut * matrix.diagonal().maxCoeff();
+  const double stop = cut * (scale > 0.0 ? scale : matrix.diagonal().maxCoeff());
   std::vector<int> order(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) order[static_cast<std::size_t>(i)] = static_cast<int>(i);
   for (Eigen::Index k = 0; k < n; ++k) {

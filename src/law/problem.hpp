@@ -62,13 +62,14 @@ struct Multipliers
 double kkt_residual(const Problem& problem, const VecX& lambda);
 
 /// Numerical rank of a symmetric positive semidefinite matrix and a set of `rank` well-conditioned
-/// rows of it (ascending), by Cholesky with diagonal pivoting; pivots below `cut` times the largest
-/// diagonal entry end it.
+/// rows of it (ascending), by Cholesky with diagonal pivoting; a pivot below `cut * scale` ends it.
+/// `scale` is the largest diagonal entry of what the matrix was made from: a Schur complement that
+/// should vanish is round-off of that, not of itself. 0 takes the matrix's own.
 struct RankReveal
 {
   int rank = 0;
   std::vector<int> rows;
 };
-RankReveal reveal_rank(MatX matrix, double cut = 1e-10);
+RankReveal reveal_rank(MatX matrix, double scale = 0.0, double cut = 1e-10);
 
 }  // namespace trocar::law

@@ -35,7 +35,7 @@ Multipliers solve_condensed(const Problem& problem, const Settings& settings)
   Multipliers result;
   const Condensed condensed(problem);
   const int box_rows = static_cast<int>(condensed.s().size());
-  const int box_rank = reveal_rank(condensed.S()).rank;
+  const int box_rank = condensed.box_rank();
   result.rank = condensed.bilateral_rank() + box_rank;
   result.nonunique = condensed.bilateral_redundant() || box_rank < box_rows;
   if (box_rows == 0) {

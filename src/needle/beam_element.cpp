@@ -72,7 +72,15 @@ BeamForce corotational_beam(const Mat12& local, double length, const EndPose& a,
   u.segment<3>(9) = core::rotation_log(frame.transpose() * b.R);
   Mat12 turn = Mat12::Zero();
   for (int k = 0; k < 4; ++k) turn.block<3, 3>(3 * k, 3 * k) = frame;
-  return {turn * (local * u), turn * local * turn.transpose()};
+  const Vec12 force = local * u;
+  BeamForce result{turn * force, turn * local * turn.transpose()};
+  if (const double tension = force[6]; tension > 0.0) {
+    const Mat3 across = tension / l * (Mat3::Identity() - frame.col(0) * frame.col(0).transpose());
+    for (const auto& [i, j, sign] :
+         {std::tuple{0, 0, 1.0}, {6, 6, 1.0}, {0, 6, -1.0}, {6, 0, -1.0}})
+      result.tangent.block<3, 3>(i, j) += sign * across;
+  }
+  return result;
 }
 
 }  // namespace trocar::needle

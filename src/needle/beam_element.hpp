@@ -34,8 +34,9 @@ struct EndPose
   Mat3 R;
 };
 
-/// Forces the element puts up and their tangent in world axes (corotational; the derivative of the
-/// element frame is left out, as in the paper's shells of this kind: symmetric, semidefinite).
+/// Forces the element puts up and a symmetric positive semidefinite tangent of them in world axes
+/// (corotational). Of the derivative of the element frame only the string stiffness of a tension
+/// is kept: the rest is not symmetric or not positive, and costs iterations, not accuracy.
 struct BeamForce
 {
   Vec12 force;

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "driver/simulation.hpp"
+#include "support/block.hpp"
+
+namespace trocar::test {
+
+/// A needle through a block 6 x 4 x 4 cm, held below; a scenario that tests change as they like.
+driver::Scenario needle_scenario(const BlockShape& shape);
+
+/// All steps of a scenario's run, state and report of each (the start included). Throws when a
+/// step is rejected.
+struct Run
+{
+  std::vector<driver::State> states;
+  std::vector<driver::StepReport> reports;
+  core::Ledger ledger;
+};
+Run run(const driver::Scenario& scenario);
+
+}  // namespace trocar::test

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include "base/petsc.hpp"
+#include "support/body.hpp"
+
+namespace trocar {
+namespace {
+
+const test::BlockShape distorted{4, 3, 3, core::Vec3(1.2, 1.0, 0.8), 0.25};
+
+fem::ElementBlocks blocks_of(const test::Body& body, std::size_t e, const core::Mat3& R)
+{
+  const auto& tet = body.space.tets()[e];
+  return tissue::operator_blocks({}, fem::tet_shape(mesh::corners(body.mesh, tet.file_tet)), R, 1.0,
+                                 1e3, false);
+}
+
+TEST(Space, EveryNodeHasOneOwnerAndGhostsArrive)
+{
+  const test::Body body(distorted);
+  EXPECT_EQ(body.comm.sum(static_cast<long long>(body.space.owned())), body.mesh.node_count());
+  fem::OwnedField x = body.space.zero();
+  for (int i = 0; i < body.space.owned(); ++i)
+    x.node(i) = body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))];
+  const auto ghosted = body.space.with_ghosts(x);
+  for (int i = 0; i < body.space.local(); ++i)
+    EXPECT_EQ(core::Vec3(ghosted.node(i)),
+              body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))]);
+  const auto global = body.space.gather(x);
+  for (int i = 0; i < body.mesh.node_count(); ++i)
+    EXPECT_EQ(core::Vec3(global.node(i)), body.mesh.x[static_cast<std::size_t>(i)]);
+  EXPECT_EQ(body.space.restrict_to_owned(global).value, x.value);
+}
+
+TEST(Space, RanksWithoutTetsAreAllowed)
+{
+  const test::Body body({1, 1, 1});
+  EXPECT_EQ(body.comm.sum(static_cast<long long>(body.space.owned())), 8);
+  EXPECT_EQ(body.space.gather(body.space.zero()).value.size(), 24);
+}
+
+// Direct scatter against PETSc's own insertion, element by element.
+TEST(BlockMatrix, EqualsMatSetValues)
+{
+  const test::Body body(distorted);
+  const fem::BlockPattern pattern(body.space);
+  fem::BlockMatrix direct(pattern);
+  base::MatHandle reference;
+  TROCAR_PETSC(MatCreate(body.comm.get(), reference.out()));
+  Mat A = reference.get();
+  TROCAR_PETSC(MatSetSizes(A, body.space.owned_dofs(), body.space.owned_dofs(), PETSC_DETERMINE,
+                           PETSC_DETERMINE));
+  TROCAR_PETSC(MatSetType(A, MATAIJ));
+  TROCAR_PETSC(MatSetBlockSize(A, 3));
+  TROCAR_PETSC(MatSetUp(A));
+  TROCAR_PETSC(MatSetOption(A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  TROCAR_PETSC(MatSetOption(A, MAT_ROW_ORIENTED, PETSC_FALSE));
+  const core::Mat3 R = core::rotation_exp(core::Vec3(0.3, -0.2, 0.9));
+  for (std::size_t e = 0; e < body.space.tets().size(); ++e) {
+    const auto blocks = blocks_of(body, e, R);
+    direct.add(e, blocks);
+    for (std::size_t p = 0; p < 10; ++p) {
+      const auto& nodes = body.space.tets()[e].nodes;
+      const int a = nodes[static_cast<std::size_t>(fem::block_pairs[p][0])];
+      const int b = nodes[static_cast<std::size_t>(fem::block_pairs[p][1])];
+      const PetscInt row = body.space.number(a), column = body.space.number(b);
+      const core::Mat3 transposed = blocks[p].transpose();
+      // Ranks insert only their own rows, as the program does.
+      if (a < body.space.owned())
+        TROCAR_PETSC(MatSetValuesBlocked(A, 1, &row, 1, &column, blocks[p].data(), ADD_VALUES));
+      if (b < body.space.owned() && a != b)
+        TROCAR_PETSC(MatSetValuesBlocked(A, 1, &column, 1, &row, transposed.data(), ADD_VALUES));
+    }
+  }
+  TROCAR_PETSC(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  TROCAR_PETSC(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  double largest = 0.0, difference = 0.0;
+  for (int row = 0; row < body.space.owned(); ++row)
+    for (int k = pattern.row_start()[static_cast<std::size_t>(row)];
+         k < pattern.row_start()[static_cast<std::size_t>(row) + 1]; ++k)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const PetscInt r = 3 * (body.space.first() + row) + i;
+          const PetscInt c = 3 * pattern.column()[static_cast<std::size_t>(k)] + j;
+          double value = 0.0;
+          TROCAR_PETSC(MatGetValues(A, 1, &r, 1, &c, &value));
+          const double mine = direct.values()[static_cast<std::size_t>(9 * k + 3 * j + i)];
+          difference = std::max(difference, std::abs(mine - value));
+          largest = std::max(largest, std::abs(value));
+        }
+  EXPECT_LT(difference, 1e-13 * body.comm.max(largest));
+}
+
+TEST(Element, BlocksEqualTheTextbookStrainMatrix)
+{
+  const test::Body body({2, 2, 2, core::Vec3::Ones(), 0.2});
+  core::MatX A = core::MatX::Zero(3 * body.mesh.node_count(), 3 * body.mesh.node_count());
+  for (int t = 0; t < body.mesh.tet_count(); ++t) {
+    const auto blocks = tissue::operator_blocks({}, fem::tet_shape(mesh::corners(body.mesh, t)),
+                                                core::Mat3::Identity(), 1.0, 1e3, false);
+    const auto& tet = body.mesh.tets[static_cast<std::size_t>(t)];
+    for (std::size_t p = 0; p < 10; ++p) {
+      const int a = tet[static_cast<std::size_t>(fem::block_pairs[p][0])];
+      const int b = tet[static_cast<std::size_t>(fem::block_pairs[p][1])];
+      A.block<3, 3>(3 * a, 3 * b) += blocks[p];
+      if (a != b) A.block<3, 3>(3 * b, 3 * a) += blocks[p].transpose();
+    }
+  }
+  const core::MatX reference = test::dense_operator(body.mesh, {}, 1.0, 1e3);
+  EXPECT_LT((A - reference).norm(), 1e-13 * reference.norm());
+}
+
+// A rotated element answers as the unrotated one does in its own axes.
+TEST(Element, StressIsObjectiveAndTheDerivativeOfTheEnergy)
+{
+  const tissue::Material m{4000.0, 0.3, 1000.0, 0.0, 0.0};
+  const core::Mat3 Q = core::rotation_exp(core::Vec3(1.0, -0.4, 0.3));
+  core::Mat3 F;
+  F << 1.1, 0.2, 0.0, -0.1, 0.95, 0.05, 0.02, 0.1, 1.2;
+  const core::Mat3 R = core::polar_rotation(F);
+  const core::Mat3 P = tissue::stress(m, R, F, core::Mat3::Zero());
+  EXPECT_LT((tissue::stress(m, Q * R, Q * F, core::Mat3::Zero()) - Q * P).norm(), 1e-10 * P.norm());
+  const auto energy = [&](const core::Mat3& G) {
+    const core::Mat3 e = core::polar_rotation(G).transpose() * G - core::Mat3::Identity();
+    return m.mu() * e.squaredNorm() + 0.5 * m.lambda() * e.trace() * e.trace();
+  };
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      core::Mat3 d = core::Mat3::Zero();
+      d(i, j) = 1e-6;
+      EXPECT_NEAR((energy(F + d) - energy(F - d)) / 2e-6, P(i, j), 1e-6 * P.norm());
+    }
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,304 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "constraint/reduce.hpp"
+#include "support/body.hpp"
+#include "support/scene.hpp"
+
+namespace trocar {
+namespace {
+
+using core::Vec3;
+using insertion::Placement;
+
+const test::BlockShape plain{6, 4, 4, Vec3(0.06, 0.04, 0.04), 0.0};
+const test::BlockShape distorted{8, 5, 5, Vec3(0.06, 0.04, 0.04), 0.25};
+
+bool all_slip(const insertion::InsertionState& state)
+{
+  return !state.points.empty() && std::none_of(state.points.begin(), state.points.end(),
+                                               [](const auto& p) { return p.stuck; });
+}
+
+// F = τ · depth to round-off in every step in which all points slip, on any mesh and placement.
+TEST(Friction, IsTauTimesDepthWheneverEverythingSlips)
+{
+  for (const auto& shape : {plain, distorted})
+    for (const insertion::PlacementSettings& placement : {insertion::PlacementSettings{},
+                                                          {Placement::crossings, 0.005, 0.0},
+                                                          {Placement::spacing, 0.0047, 0.3},
+                                                          {Placement::spacing, 0.012, 0.3}}) {
+      driver::Scenario scenario = test::needle_scenario(shape);
+      scenario.insertion.placement = placement;
+      // One step advances 0.5 mm; τ ℓ W_kk is about 1 N/m * 0.01 m * 3e-3 m/N = 3e-5 m.
+      scenario.needles[0].motion.velocity = 0.025;
+      scenario.insertion.friction = {{1.0, 1.0}};
+      scenario.time.end = 1.5;
+      const test::Run run = test::run(scenario);
+      int slipping = 0;
+      for (std::size_t n = 1; n < run.states.size(); ++n) {
+        if (!all_slip(run.states[n].insertions[0])) continue;
+        ++slipping;
+        const auto& needle = run.reports[n].needles[0];
+        EXPECT_NEAR(needle.coupling.shaft_friction, 1.0 * needle.depth, 1e-9);
+      }
+      EXPECT_GT(slipping, 20);
+    }
+}
+
+TEST(Friction, OnlyDissipates)
+{
+  driver::Scenario scenario = test::needle_scenario(distorted);
+  scenario.tissue.model = tissue::Model::corotational;
+  scenario.needles[0].motion.hold = 0.2;
+  scenario.needles[0].motion.withdraw_velocity = 0.03;
+  scenario.insertion.friction = {{14.0, 9.0}};
+  scenario.time.end = 4.0;
+  double worst = 0.0, total = 0.0;
+  for (const auto& report : test::run(scenario).reports) {
+    worst = std::max(worst, report.needles[0].coupling.friction_work);
+    total += report.needles[0].coupling.friction_work;
+  }
+  EXPECT_LE(worst, 1e-12);
+  EXPECT_LT(total, -1e-4);
+}
+
+// From rest a point holds up to the static limit, slipping it keeps the dynamic one: pulled out
+// slowly, the needle breaks away at τ_s · depth and goes on at τ_d · depth.
+TEST(Friction, BreaksAwayAtTheStaticLimit)
+{
+  driver::Scenario scenario = test::needle_scenario(plain);
+  needle::BaseMotion& motion = scenario.needles[0].motion;
+  motion.inserted = motion.depth = 0.04;
+  motion.withdraw_velocity = 0.001;
+  scenario.insertion.friction = {{4.0, 2.0}};
+  scenario.time.step = 0.01;
+  scenario.time.end = 3.0;
+  const test::Run run = test::run(scenario);
+  double peak = 0.0;
+  for (const auto& report : run.reports)
+    peak = std::max(peak, -report.needles[0].coupling.shaft_friction);
+  const auto& last = run.reports.back().needles[0];
+  // Points break away one after another, so the sum peaks below the sum of the static limits.
+  EXPECT_GT(peak, 1.2 * 2.0 * 0.04);
+  EXPECT_LE(peak, 4.0 * 0.04 + 1e-9);
+  ASSERT_TRUE(all_slip(run.states.back().insertions[0]));
+  EXPECT_NEAR(-last.coupling.shaft_friction, 2.0 * last.depth, 1e-9);
+}
+
+// What the holder puts in is what the tissue feels. The tissue's side is taken from its own
+// unbalanced nodal forces, which only the rows can balance.
+TEST(Balance, ActionEqualsReaction)
+{
+  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+    driver::Scenario scenario = test::needle_scenario(distorted);
+    scenario.needles[0].model = model;
+    const base::Comm comm(MPI_COMM_WORLD);
+    driver::Simulation simulation(scenario, comm);
+    driver::State state = *simulation.initial_state().state;
+    double worst = 0.0, largest = 0.0;
+    for (int n = 1; n <= 60; ++n) {
+      const core::TimeStep now{0.02 * n, 0.02, false};
+      const driver::StepResult result = simulation.step(state, now);
+      ASSERT_TRUE(result.state) << result.why;
+      double scale = 0.0;
+      const fem::GlobalField unbalanced = simulation.space().gather(
+          simulation.tissue().residual(state.tissue, result.state->tissue.u, now, scale));
+      Vec3 on_tissue = Vec3::Zero();
+      for (int node = 0; node < scenario.mesh.node_count(); ++node)
+        on_tissue -= unbalanced.node(node);
+      worst = std::max(worst, (result.report.needles[0].base.force - on_tissue).norm());
+      largest = std::max(largest, on_tissue.norm());
+      state = *result.state;
+    }
+    EXPECT_GT(largest, 0.1);
+    EXPECT_LT(worst, 1e-10 * largest);
+  }
+}
+
+// In a static state the supports carry weight and needle together.
+TEST(Balance, SupportsCarryWeightAndNeedle)
+{
+  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+    driver::Scenario scenario = test::needle_scenario(distorted);
+    scenario.needles[0].model = model;
+    scenario.time.analysis = driver::Analysis::equilibrium;
+    scenario.tissue.model = tissue::Model::corotational;
+    scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);
+    scenario.needles[0].motion.inserted = 0.03;
+    const base::Comm comm(MPI_COMM_WORLD);
+    driver::Simulation simulation(scenario, comm);
+    const driver::StepResult start = simulation.initial_state();
+    ASSERT_TRUE(start.state) << start.why;
+    const tissue::TissueState rest = simulation.tissue().at_rest();
+    const Vec3 supports =
+        simulation.tissue().support_force(rest, start.state->tissue.u, {0, 1, true});
+    const Vec3 weight = 1000.0 * 0.06 * 0.04 * 0.04 * Vec3(0, 0, -9.81);
+    const Vec3 needle = start.report.needles[0].base.force;
+    EXPECT_GT(needle.norm(), 1e-3);
+    EXPECT_LT((supports + weight + needle).norm(), 1e-7 * weight.norm());
+  }
+}
+
+TEST(Withdrawal, LeavesNoPointAndReturnsTheTissue)
+{
+  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+    driver::Scenario scenario = test::needle_scenario(distorted);
+    scenario.needles[0].model = model;
+    scenario.tissue.model = tissue::Model::corotational;
+    scenario.needles[0].motion.hold = 0.1;
+    scenario.needles[0].motion.withdraw_velocity = 0.04;
+    scenario.time.end = 5.0;
+    const test::Run run = test::run(scenario);
+    const auto& last = run.states.back();
+    EXPECT_EQ(last.insertions[0].phase, insertion::Phase::withdrawn);
+    EXPECT_TRUE(last.insertions[0].points.empty());
+    EXPECT_EQ(run.reports.back().rows, 0);
+    double largest = 0.0;
+    for (const auto& state : run.states)
+      largest = std::max(
+          largest, state.tissue.u.value.size() ? state.tissue.u.value.cwiseAbs().maxCoeff() : 0.0);
+    const base::Comm comm(MPI_COMM_WORLD);
+    const double left =
+        last.tissue.u.value.size() ? last.tissue.u.value.cwiseAbs().maxCoeff() : 0.0;
+    EXPECT_LT(comm.max(left), 1e-6 * comm.max(largest));
+  }
+}
+
+TEST(Reinsertion, GoesBackInThroughTheOpenChannel)
+{
+  driver::Scenario scenario = test::needle_scenario(plain);
+  scenario.needles[0].motion.trajectory = core::parse_csv(
+      "time,x,y,z\n0,-0.08,0.0173,0.0231\n1,-0.05,0.0173,0.0231\n2,-0.09,0.0173,0.0231\n"
+      "3,-0.05,0.0173,0.0231\n",
+      "in_out_in.csv");
+  scenario.time.end = 3.0;
+  const test::Run run = test::run(scenario);
+  const auto& first = run.states[50].insertions[0];
+  const auto& out = run.states[100].insertions[0];
+  const auto& again = run.states[150].insertions[0];
+  EXPECT_TRUE(out.points.empty());
+  EXPECT_EQ(out.path.sites.size(), first.path.sites.size());
+  ASSERT_GE(again.points.size(), first.points.size() - 1);
+  // The same places, hence the same identities; the channel was not cut anew beside itself.
+  for (std::size_t k = 0; k < std::min(first.points.size(), again.points.size()); ++k)
+    EXPECT_EQ(again.points[k].site, first.points[k].site);
+  EXPECT_LE(again.path.sites.size(), first.path.sites.size() + 1);
+}
+
+// W is symmetric, positive semidefinite and the dense H A⁻¹ Hᵀ.
+TEST(ConstraintProblem, WIsTheDenseProduct)
+{
+  driver::Scenario scenario = test::needle_scenario(distorted);
+  scenario.needles[0].model = needle::Model::beam;
+  tissue::TissueSettings settings = scenario.tissue;
+  test::Body body(distorted, settings);
+  const mesh::Locator locator(body.mesh);
+  insertion::InsertionSettings coupling = scenario.insertion;
+  coupling.placement.merge = 0.0;
+  const insertion::Insertion insertion(body.mesh, locator, coupling);
+  scenario.needles[0].motion.inserted = 0.04;
+  const needle::Needle needle(scenario.needles[0]);
+  insertion::InsertionState state = insertion.start(needle);
+  const fem::GlobalField u{core::VecX::Zero(3 * body.mesh.node_count())};
+  constraint::Set set;
+  insertion.add_rows(state, needle.initial().shaft, insertion::Deformed(body.mesh, locator, u), 0,
+                     set);
+  const double h = 0.02;
+  const core::TimeStep now{h, h, false};
+  const tissue::TissueState rest = body.tissue.at_rest();
+  const auto motion = body.tissue.free_motion(rest, rest.u, now);
+  const auto linear = needle.linearise(needle.initial(), needle.initial(), now);
+  const constraint::Reduced reduced =
+      constraint::reduce(set, body.space, motion.increment, body.tissue.compliance(),
+                         {{linear.held, linear.factor, linear.free_increment}});
+
+  const auto& material = settings.materials[0];
+  core::MatX A = test::dense_operator(body.mesh, material, 1.0 + material.rayleigh_stiffness / h,
+                                      1.0 / (h * h));
+  test::fix_dense(A, body.tissue.fixed(), body.mesh.node_count());
+  core::MatX H = core::MatX::Zero(set.size(), A.rows());
+  core::MatX H_n = core::MatX::Zero(set.size(), needle.dofs());
+  for (int i = 0; i < set.size(); ++i) {
+    const auto& row = set.rows()[static_cast<std::size_t>(i)];
+    for (int a = 0; a < 4; ++a)
+      for (int k = 0; k < 3; ++k)
+        if (!body.tissue.fixed().fixed(row.anchor.node[static_cast<std::size_t>(a)], k))
+          H(i, 3 * row.anchor.node[static_cast<std::size_t>(a)] + k) +=
+              row.anchor.weight[a] * row.direction[k];
+    for (const auto& [dof, value] : row.lever) H_n(i, dof) += value;
+  }
+  const Eigen::Index free = needle.dofs() - 6;
+  const core::MatX A_n = linear.A.bottomRightCorner(free, free);
+  const core::MatX dense = H * A.llt().solve(H.transpose()) +
+                           H_n.rightCols(free) * A_n.llt().solve(H_n.rightCols(free).transpose());
+  const core::MatX& W = reduced.problem.W;
+  EXPECT_LT((W - dense).norm(), 1e-10 * dense.norm());
+  EXPECT_EQ((W - W.transpose()).norm(), 0.0);
+  EXPECT_GE(Eigen::SelfAdjointEigenSolver<core::MatX>(W).eigenvalues()[0], -1e-12 * W.norm());
+}
+
+// Table 1 of the needle paper: rows of a path of 15 cm at its six spacings.
+TEST(PaperBeam, RowCountsOfTableOne)
+{
+  for (const auto& [spacing, rows] : {std::pair{0.01, 32},
+                                      {0.005, 62},
+                                      {0.002, 152},
+                                      {0.001, 302},
+                                      {0.0007, 430},
+                                      {0.0004, 752}}) {
+    const mesh::Mesh mesh = test::block({49, 5, 5, Vec3(0.15, 0.02, 0.02)});
+    const mesh::Locator locator(mesh);
+    const insertion::Insertion insertion(mesh, locator,
+                                         {{Placement::spacing, spacing, 0.3}, {{0.0, 0.0}}, 1e-9});
+    needle::NeedleSettings settings;
+    settings.section = {0.0005, 0.0, 2e11, 0.3};
+    settings.motion.entry = Vec3(0, 0.0093, 0.0107);
+    settings.motion.length = 0.2;
+    settings.motion.inserted = 0.15;
+    const needle::Needle needle(settings);
+    insertion::InsertionState state = insertion.start(needle);
+    const fem::GlobalField u{core::VecX::Zero(3 * mesh.node_count())};
+    constraint::Set set;
+    insertion.add_rows(state, needle.initial().shaft, insertion::Deformed(mesh, locator, u), 0,
+                       set);
+    EXPECT_EQ(set.size(), rows);
+  }
+}
+
+// A rejected step leaves no trace: trying an impossible step in between changes nothing.
+TEST(State, ARejectedStepLeavesNoTrace)
+{
+  driver::Scenario scenario = test::needle_scenario(distorted);
+  scenario.tissue.model = tissue::Model::corotational;
+  const base::Comm comm(MPI_COMM_WORLD);
+  driver::Simulation plain_run(scenario, comm), tried(scenario, comm);
+  driver::State a = *plain_run.initial_state().state, b = *tried.initial_state().state;
+  for (int n = 1; n <= 20; ++n) {
+    const core::TimeStep now{0.02 * n, 0.02, false};
+    tried.step(b, {0.02 * n + 5.0, 5.0, false});  // far too long; accepted or not, it is dropped
+    a = *plain_run.step(a, now).state;
+    b = *tried.step(b, now).state;
+  }
+  EXPECT_LT((a.tissue.u.value - b.tissue.u.value).norm(), 1e-14);
+  EXPECT_EQ(a.insertions[0].points.size(), b.insertions[0].points.size());
+}
+
+// Iterating the linearisation changes a bent corotational step a little and then nothing.
+TEST(Newton, IteratedStepsBalanceTheTrueForces)
+{
+  driver::Scenario scenario = test::needle_scenario(plain);
+  scenario.needles[0].model = needle::Model::beam;
+  scenario.tissue.model = tissue::Model::corotational;
+  scenario.time.newton_max = 30;
+  scenario.time.end = 0.8;
+  const test::Run run = test::run(scenario);
+  for (std::size_t n = 1; n < run.reports.size(); ++n) {
+    EXPECT_LT(run.reports[n].linearisations, 30);
+    EXPECT_LE(run.reports[n].residual, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace trocar
