@@ -64,6 +64,12 @@ const OptionSpec& Options::spec(const std::string& name) const
   throw Failure(ExitCode::internal, "option -" + name + " is read but not in the table");
 }
 
+std::string Options::label(const std::string& name, const std::string& group) const
+{
+  const std::string full = with_group(name, group);
+  return given_.count(full) ? full : without_group(name);
+}
+
 const std::string& Options::raw(const std::string& name, const std::string& group)
 {
   const OptionSpec& row = spec(name);
@@ -102,15 +108,15 @@ double Options::number(const std::string& cell, const OptionSpec& row,
 
 double Options::real(const std::string& name, const std::string& group)
 {
-  return number(raw(name, group), spec(name), with_group(name, group));
+  return number(raw(name, group), spec(name), label(name, group));
 }
 
 int Options::integer(const std::string& name, const std::string& group)
 {
   const std::string& value = raw(name, group);
-  const double parsed = number(value, spec(name), with_group(name, group));
+  const double parsed = number(value, spec(name), label(name, group));
   if (parsed != std::floor(parsed) || std::abs(parsed) > 2e9)
-    throw option_error("option -" + with_group(name, group) + ": '" + value + "' is no integer");
+    throw option_error("option -" + label(name, group) + ": '" + value + "' is no integer");
   return static_cast<int>(parsed);
 }
 
@@ -119,7 +125,7 @@ bool Options::flag(const std::string& name, const std::string& group)
   const std::string& value = raw(name, group);
   if (value.empty() || value == "true" || value == "1" || value == "yes") return true;
   if (value == "false" || value == "0" || value == "no") return false;
-  throw option_error("option -" + with_group(name, group) + ": '" + value +
+  throw option_error("option -" + label(name, group) + ": '" + value +
                      "' is neither true nor false");
 }
 
@@ -129,7 +135,7 @@ std::string Options::text(const std::string& name, const std::string& group)
   const OptionSpec& row = spec(name);
   if (row.type == OptionType::choice &&
       std::find(row.choices.begin(), row.choices.end(), value) == row.choices.end())
-    throw option_error("option -" + with_group(name, group) + ": '" + value + "' is not one of " +
+    throw option_error("option -" + label(name, group) + ": '" + value + "' is not one of " +
                        join(row.choices) + did_you_mean(value, row.choices));
   return value;
 }
@@ -141,7 +147,7 @@ std::vector<std::string> Options::names(const std::string& name, const std::stri
   std::vector<std::string> words = split(value, ',');
   for (std::size_t i = 0; i < words.size(); ++i)
     if (words[i].empty() || std::count(words.begin(), words.end(), words[i]) > 1)
-      throw option_error("option -" + with_group(name, group) + ": '" + value +
+      throw option_error("option -" + label(name, group) + ": '" + value +
                          "' holds an empty or repeated name");
   return words;
 }
@@ -150,20 +156,21 @@ Vec3 Options::vector(const std::string& name, const std::string& group)
 {
   const Vec3 value = vector_or_free(name, group);
   if (value.hasNaN())
-    throw option_error("option -" + with_group(name, group) + ": 'free' has no meaning here");
+    throw option_error("option -" + label(name, group) + ": 'free' has no meaning here");
   return value;
 }
 
 Vec3 Options::vector_or_free(const std::string& name, const std::string& group)
 {
   const std::string& value = raw(name, group);
-  const std::string label = with_group(name, group);
+  const std::string shown_name = label(name, group);
   const std::vector<std::string> cells = split(value, ',');
-  if (cells.size() != 3) throw option_error("option -" + label + ": '" + value + "' must be x,y,z");
+  if (cells.size() != 3)
+    throw option_error("option -" + shown_name + ": '" + value + "' must be x,y,z");
   Vec3 result;
   for (int a = 0; a < 3; ++a) {
     const std::string& cell = cells[static_cast<std::size_t>(a)];
-    result[a] = cell == "free" ? std::nan("") : number(cell, spec(name), label);
+    result[a] = cell == "free" ? std::nan("") : number(cell, spec(name), shown_name);
   }
   return result;
 }

@@ -75,6 +75,8 @@ class Options
  private:
   const OptionSpec& spec(const std::string& name) const;
   const std::string& raw(const std::string& name, const std::string& group);
+  /// The name to complain about: what the user gave, own or inherited.
+  std::string label(const std::string& name, const std::string& group) const;
   double number(const std::string& cell, const OptionSpec& spec, const std::string& label) const;
 
   const std::vector<OptionSpec>& table_;

@@ -85,6 +85,12 @@ void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh
                            core::shown(std::max(motion.depth, motion.inserted)) +
                            " m is more than its length");
   base_outside(motion.at(0.0).x, "at the start");
+  const core::Vec3 before_entry = motion.entry - 1e-3 * motion.length * motion.direction;
+  if (motion.inserted < motion.length && tissue.meets(motion.start().x, before_entry))
+    throw core::data_error(who +
+                           "its shaft would start inside the tissue, outside its path "
+                           "(check -needle_entry and -needle_direction; -needle_inserted "
+                           "gives the depth at the start)");
   const double reach =
       std::max({motion.depth, motion.inserted, motion.velocity > 0.0 ? 1e-9 : 0.0});
   const core::Vec3 far = motion.entry + (reach > 0.0 ? reach : 1e-9) * motion.direction;

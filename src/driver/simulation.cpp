@@ -95,6 +95,8 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
       if (trouble) return StepResult::rejected(*trouble);
     }
     correct(old, now, tissue.increment, needles, correction, next, report);  // 5
+    if (!tissue_.possible(next.tissue.u))
+      return StepResult::rejected("an element of the tissue would turn inside out");
     report.linearisations = iteration;
     double residual = 0.0;
     const bool done = most == 1 || balanced(old, next, now, correction, residual);

@@ -195,9 +195,20 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   FreeMotion motion{current_->system->solve(r), std::nullopt};
   fixed_.clear(motion.increment);
   if (moves) motion.increment.value += prescribed.value;
-  if (!space_->comm().all(motion.increment.value.allFinite()))
-    motion.trouble = "the free motion of the tissue is not finite";
   return motion;
+}
+
+bool Tissue::possible(const OwnedField& u) const
+{
+  bool good = u.value.allFinite();
+  if (settings_.model == Model::corotational) {
+    const auto u_g = space_->with_ghosts(u);
+    for (std::size_t e = 0; good && e < elements_.size(); ++e) {
+      const Mat3 grad = nodal_gradient(elements_[e].shape, nodal_values(u_g, space_->tets()[e]));
+      good = (Mat3::Identity() + grad).determinant() > 0.0;
+    }
+  }
+  return space_->comm().all(good);
 }
 
 OwnedField Tissue::respond(const OwnedField& forces)

@@ -59,6 +59,10 @@ class Tissue
   /// Collective.
   FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step);
 
+  /// False when a displacement is not finite or turns a corotational element inside out.
+  /// Collective.
+  bool possible(const OwnedField& u) const;
+
   /// A⁻¹ f for nodal forces f [N] with the operator of the last `free_motion`. Collective.
   OwnedField respond(const OwnedField& forces);
 

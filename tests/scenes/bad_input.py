@@ -1,0 +1,106 @@
+"""Bad input: one clear line, the right exit code, no hang, nothing else."""
+import os
+import stat
+
+from harness import FOLDER, check, error_lines, finish, options, run, small_block, structured
+
+small = options("small_insertion.opts")
+small.update({"-mesh": small_block(), "-output_dir": os.path.join(FOLDER, "bad"), "-time_end": "0.1"})
+
+
+def written(name, text):
+    path = os.path.join(FOLDER, name)
+    with open(path, "w") as stream:
+        stream.write(text)
+    return path
+
+
+def refuses(what, code, words, changes, remove=(), ranks=(2,)):
+    settings = {key: value for key, value in {**small, **changes}.items() if key not in remove}
+    for n in ranks:
+        process = run(settings, n, timeout=60)
+        lines = error_lines(process)
+        good = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
+        check(good, f"{what} on {n} ranks: {process.returncode} {lines}")
+
+
+tet = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"a\"\n$EndPhysicalNames\n"
+       "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+       "$Elements\n1\n77 4 2 1 1 CORNERS\n$EndElements\n")
+
+refuses("missing mesh", 65, ["nowhere.msh"], {"-mesh": "nowhere.msh"}, ranks=(1, 3))
+refuses("no mesh option", 64, ["-mesh"], {}, remove=["-mesh"])
+refuses("empty mesh", 65, ["empty.msh", "empty"], {"-mesh": written("empty.msh", "")})
+refuses("broken mesh", 65, ["broken.msh"], {"-mesh": written("broken.msh", tet[:150])})
+refuses("inverted tet", 65, ["77", "inverted"],
+        {"-mesh": written("inverted.msh", tet.replace("CORNERS", "1 3 2 4"))})
+refuses("mesh scale of zero", 64, ["-mesh_scale"], {"-mesh_scale": "0"})
+refuses("unknown surface", 65, ["z9", "did you mean 'z"], {"-fix": "z9"})
+refuses("bad axes", 64, ["-fix", "z0:q"], {"-fix": "z0:q"})
+refuses("unknown boundary surface", 65, ["bottom"], {"-boundary_bottom_traction": "1,0,0"})
+refuses("unknown volume in an override", 64, ["-tissue_liver_young", "did you mean"],
+        {"-tissue_liver_young": "100"})
+refuses("override of no needle", 64, ["-needle_b_depth"], {"-needle_b_depth": "0.01"})
+refuses("no supports in statics", 64, ["-fix"], {"-analysis": "static"}, remove=["-fix"])
+refuses("no supports for an equilibrium", 64, ["-fix"], {"-time_initial": "equilibrium", "-fix": "z0:z"})
+refuses("negative modulus", 64, ["-tissue_young", "-5"], {"-tissue_young": "-5"})
+refuses("Poisson's ratio of 0.5", 64, ["-tissue_poisson"], {"-tissue_poisson": "0.5"})
+refuses("NaN", 64, ["-tissue_density", "nan"], {"-tissue_density": "nan"})
+refuses("words for a number", 64, ["-time_step", "fast"], {"-time_step": "fast"})
+refuses("unknown choice", 64, ["-constraint_solver", "did you mean 'hybrid'"],
+        {"-constraint_solver": "hybird"})
+refuses("unknown option", 64, ["-needle_deph", "did you mean '-needle_depth'"], {"-needle_deph": "1"})
+refuses("misspelt solver option", 64, ["-tissue_ksp_rtoll", "did you mean '-tissue_ksp_rtol'"],
+        {"-tissue_ksp_rtoll": "1e-8", "-tissue_ksp_type": "cg", "-tissue_pc_type": "jacobi"})
+refuses("unknown field", 64, ["-output_fields", "displacement"], {"-output_fields": "displacment"})
+refuses("needle beside the mesh", 65, ["never meets"], {"-needle_entry": "0,0.5,0.5"})
+refuses("needle pointing away", 65, ["start inside"], {"-needle_direction": "-1,0,0", "-needle_entry": "-0.01,0.02,0.02"})
+refuses("inserted beside the mesh", 65, ["needle 'needle'"],
+        {"-needle_inserted": "0.01", "-needle_entry": "0,0.5,0.5"})
+refuses("base in the tissue", 65, ["base would enter"], {"-needle_depth": "0.2"})
+refuses("direction of length 0", 64, ["-needle_direction"], {"-needle_direction": "0,0,0"})
+refuses("needle name that is an option", 64, ["withdraw"], {"-needles": "withdraw"})
+refuses("tube wider inside", 64, ["-needle_inner_radius"], {"-needle_inner_radius": "0.001"})
+refuses("missing CSV", 65, ["no.csv"], {"-needle_trajectory": "no.csv"})
+start = "0,-0.08,0.02,0.02\n"
+refuses("NaN in a CSV", 65, ["nan.csv", "line 3"],
+        {"-needle_trajectory": written("nan.csv", "time,x,y,z\n" + start + "1,nan,0.02,0.02\n")})
+refuses("CSV that begins elsewhere", 65, ["begins"],
+        {"-needle_trajectory": written("off.csv", "time,x,y,z\n0,-0.07,0.02,0.02\n")})
+refuses("CSV base in the tissue", 65, ["base would enter"],
+        {"-needle_trajectory": written("in.csv", "time,x,y,z\n" + start + "1,0.01,0.02,0.02\n")})
+refuses("CSV with time running back", 65, ["time does not increase"],
+        {"-needle_trajectory": written("back.csv", "time,x,y,z\n" + start + start)})
+refuses("curve without a load", 64, ["-boundary_z1_curve"], {"-boundary_z1_curve": "no.csv"})
+refuses("folder that cannot be made", 74, ["/proc/none"], {"-output_dir": "/proc/none"})
+refuses("file where the folder should be", 74, ["taken"],
+        {"-output_dir": written("taken", "") + "/results"})
+refuses("solver that cannot converge", 70, ["did not converge"],
+        {"-tissue_ksp_type": "cg", "-tissue_pc_type": "none", "-tissue_ksp_max_it": "2",
+         "-time_end": "0.5", "-gravity": "0,0,-9.81"}, ranks=(1, 3))
+refuses("preconditioner alone as a solver", 64, ["preonly"],
+        {"-tissue_ksp_type": "preonly", "-tissue_pc_type": "jacobi"})
+refuses("constraint solver out of sweeps", 70, ["pgs did not converge"],
+        {"-constraint_solver": "pgs", "-constraint_max_iterations": "1", "-needle_inserted": "0.03",
+         "-gravity": "0,0,-9.81", "-insertion_placement": "spacing", "-insertion_spacing": "0.002"})
+refuses("step too long to take", 70, ["inside out"],
+        {"-tissue_model": "corotational", "-gravity": "0,0,-9e9", "-time_step": "10", "-time_end": "10"})
+
+process = run({"-options_file": "options/none.opts"})
+check(process.returncode == 64 and len(error_lines(process)) == 1 and "none.opts" in process.stderr,
+      f"missing options file: {process.returncode} {error_lines(process)}")
+
+two = structured("two_parts", *"--nodes 5 3 3 --size 0.04 0.02 0.02 --split 6 --volumes a,b".split())
+process = run({**small, "-mesh": two, "-tissue_a_young": "0"})
+check(process.returncode == 64 and "-tissue_a_young" in process.stderr, "bad value in an override")
+
+if os.geteuid() != 0:  # root writes everywhere
+    closed = os.path.join(FOLDER, "closed")
+    os.makedirs(closed)
+    os.chmod(closed, stat.S_IRUSR | stat.S_IXUSR)
+    refuses("folder without permission", 74, ["closed"], {"-output_dir": closed + "/x"})
+
+process = run({**small, "-check": ""})
+check(process.returncode == 0 and not os.path.exists(small["-output_dir"] + "/run.h5"),
+      "-check stops after set-up and writes nothing")
+finish()

@@ -1,0 +1,47 @@
+"""The work ledger: a scene pays only for what it uses."""
+import os
+
+from harness import check, completed, finish, histories, ledger, options, small_block
+
+small = options("small_insertion.opts")
+small["-mesh"] = small_block()
+
+work = ledger(completed(small))
+check(work["assemblies"] == 1 and work["factorisations"] == 1,
+      f"linear tissue: one assembly and one factorisation in {work['steps']} steps")
+check(work["columns_built"] <= 12, f"each isolated dof solved once ({work['columns_built']} columns)")
+check(work["columns_reused"] > 100 * work["columns_built"], "and then reused")
+
+# 0.5 / 0.04 leaves a shorter last step: a second h, a second operator, no third.
+work = ledger(completed({**small, "-time_step": "0.04", "-time_end": "0.5"}))
+check(work["assemblies"] == 2 and work["steps"] == 13, "a shorter last step is one more operator")
+
+none = {**small, "-needles": '""', "-gravity": "0,0,-9.81", "-time_end": "0.5"}
+folder = completed(none)
+work = ledger(folder)
+check(work["constraint_solves"] == 0 and work["columns_built"] == 0,
+      "no needle: no compliance column and no constraint solve")
+check(work["solves"] == work["steps"], "no needle: one solve per step")
+check(not any(name.startswith("needle") for name in histories(folder)), "no needle: no histories")
+
+outside = {**small, "-needle_velocity": "0", "-time_end": "0.2"}
+work = ledger(completed(outside))
+check(work["constraint_solves"] == 0, "a needle outside costs no constraint solve")
+
+folder = completed({**small, "-output_fields": '""', "-time_end": "0.2"})
+check(os.listdir(os.path.join(folder, "fields")) == [], "no output fields: no field file")
+
+for provider, more in (("ksp", {}), ("ksp_block", {}), ("auto", {"-tissue_ksp_type": "cg"})):
+    work = ledger(completed({**small, "-compliance_provider": provider, "-time_end": "1", **more}))
+    solves = 2 * work["steps"] - (work["steps"] - work["constraint_solves"])
+    expected = solves + (0 if provider == "ksp_block" else work["columns_built"])
+    check(work["solves"] == expected, f"{provider}: {work['solves']} solves accounted for")
+
+gel = options("gel_insertion.opts")
+gel.update({"-time_end": "0.4"})
+work = ledger(completed(gel))
+check(work["assemblies"] == work["factorisations"], "corotational: one factorisation per assembly")
+keys = {"assemblies", "factorisations", "solves", "half_sweeps", "columns_built", "columns_reused",
+        "constraint_solves", "contact_queries", "stress_evaluations", "steps", "rejected_steps"}
+check(set(work) == keys, "the ledger holds every count of the contract")
+finish()

@@ -1,0 +1,26 @@
+"""Every shipped option file passes -check and has its card; docs/options.md is current."""
+import glob
+import os
+import subprocess
+
+from harness import PROGRAM, ROOT, check, finish, run
+
+for path in sorted(glob.glob(os.path.join(ROOT, "options", "*.opts"))):
+    name = os.path.basename(path)
+    with open(path) as stream:
+        card = [line for line in stream if line.startswith("#")]
+    for word in ("What", "Equations", "Run", "Expect", "Seconds"):
+        check(any(line.startswith("# " + word) for line in card), f"{name}: the card says '{word}'")
+    process = run({"-options_file": path, "-check": ""}, ranks=2)
+    check(process.returncode == 0, f"{name}: -check {process.stderr[-300:]}")
+    with open(os.path.join(ROOT, "README.md")) as stream:
+        check(name in stream.read(), f"{name}: the README's table names it")
+
+help_text = subprocess.run([PROGRAM, "-help"], capture_output=True, text=True)
+check(help_text.returncode == 0 and "-needle_velocity" in help_text.stdout, "-help lists options")
+table = subprocess.run([PROGRAM, "-help_markdown"], capture_output=True, text=True).stdout
+with open(os.path.join(ROOT, "docs", "options.md")) as stream:
+    check(stream.read() == table, "docs/options.md is what -help_markdown prints")
+version = subprocess.run([PROGRAM, "-version"], capture_output=True, text=True).stdout
+check(version.startswith("trocar "), "-version")
+finish()

@@ -1,0 +1,55 @@
+"""The same histories and fields on 1, 2 and 3 ranks, to 1e-8 of each history's size."""
+import os
+
+import h5py
+import numpy as np
+
+from harness import check, completed, finish, histories, options, small_block
+
+gel = options("gel_insertion.opts")
+gel.update({"-time_end": "6", "-output_every": "50", "-output_fields": "displacement,velocity"})
+ties = options("small_insertion.opts")
+ties.update({"-mesh": small_block(), "-output_every": "50"})
+# Nothing deforms without friction: the tip then stops exactly on faces and vertices.
+exact = {**ties, "-insertion_friction_static": "0", "-insertion_friction_dynamic": "0",
+         "-needle_velocity": "0.0125", "-time_step": "0.02", "-time_end": "3"}
+plane = {**exact, "-needle_entry": "0,0.0123,0.02", "-insertion_merge": "0"}
+iterative = {**ties, "-time_end": "1", "-tissue_ksp_type": "cg", "-tissue_pc_type": "bjacobi",
+             "-tissue_ksp_rtol": "1e-13"}
+
+for name, settings, tolerance in [
+    ("no ties (gel)", gel, 1e-8), ("ties", ties, 1e-8), ("tip exactly on vertices", exact, 1e-8),
+    ("path in a face plane", plane, 1e-8), ("iterative solver", iterative, 1e-6)]:
+    folders = [completed(settings, ranks) for ranks in (1, 2, 3)]
+    first = histories(folders[0])
+    for ranks, folder in zip((2, 3), folders[1:]):
+        other = histories(folder)
+        check(first.keys() == other.keys(), f"{name}: same histories on {ranks} ranks")
+        worst = ("", 0.0)
+        for key, values in first.items():
+            if key.endswith("residual"):  # round-off by nature; bounded by the tolerance instead
+                check(other[key].max() <= 1e-9, f"{name}: residual <= 1e-9 m on {ranks} ranks")
+                continue
+            # 1e-6 of a newton, metre or joule stands in where a history is zero but for round-off.
+            size = max(abs(values).max(), 1e-6)
+            difference = abs(values - other[key]).max() / size
+            if difference > worst[1]:
+                worst = (key, difference)
+        check(worst[1] <= tolerance, f"{name}: {ranks} ranks differ by {worst[1]:.1e} ({worst[0]})")
+        steps = sorted(os.listdir(os.path.join(folders[0], "fields")))
+        check(steps == sorted(os.listdir(os.path.join(folder, "fields"))), f"{name}: same files")
+        with h5py.File(os.path.join(folders[0], "fields", steps[-2])) as a, \
+                h5py.File(os.path.join(folder, "fields", steps[-2])) as b:
+            u, v = a["displacement"][...], b["displacement"][...]
+            check(abs(u - v).max() <= tolerance * max(abs(u).max(), 1e-6), f"{name}: same displacement")
+            check(list(a) == list(b), f"{name}: same datasets")
+            if "coupling" in a:
+                check(np.array_equal(a["coupling/id"], b["coupling/id"]), f"{name}: same points")
+    if name == "tip exactly on vertices":
+        depth = first["needle/needle/depth"]
+        points = first["needle/needle/points"]
+        # 0.25 mm steps: at 10, 20 and 30 mm the tip is on a vertex, and its point is there.
+        for millimetres in (10, 20, 30):
+            step = int(np.argmin(abs(depth - 1e-3 * millimetres)))
+            check(points[step] == millimetres // 10 + 1, f"{name}: {millimetres} mm counts its vertex")
+finish()

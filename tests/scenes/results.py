@@ -1,0 +1,88 @@
+"""What a run leaves behind: units, provenance, shapes, order, XDMF that points at real data."""
+import os
+import xml.etree.ElementTree as ElementTree
+
+import h5py
+import numpy as np
+
+from harness import check, completed, finish, options, small_block
+
+settings = options("small_insertion.opts")
+settings.update({"-mesh": small_block(), "-time_end": "1", "-output_every": "10",
+                 "-output_fields": "displacement,velocity"})
+folder = completed(settings, 2)
+
+
+def without_units(path):
+    missing = []
+    with h5py.File(path) as file:
+        def look(name, node):
+            if isinstance(node, h5py.Dataset) and "units" not in node.attrs:
+                missing.append(name)
+        file.visititems(look)
+    return missing
+
+
+with h5py.File(os.path.join(folder, "run.h5")) as run:
+    rows = len(run["history/time"])
+    check(rows == 51, "one history row per step and one for the start")
+    check(np.allclose(run["history/time"], 0.02 * np.arange(51), atol=1e-12), "times are n h")
+    needle = run["history/needle/needle"]
+    for name, shape in [("tip", (rows, 3)), ("depth", (rows,)), ("base_force", (rows, 3)),
+                        ("base_moment", (rows, 3)), ("shaft_friction", (rows,)),
+                        ("tip_force", (rows,))]:
+        check(needle[name].shape == shape, f"needle/{name} has shape {shape}")
+    for name in ("constraint/rows", "constraint/rank", "constraint/iterations",
+                 "constraint/residual", "compliance/probes", "compliance/new_probes",
+                 "compliance/reused_probes", "compliance/build_seconds", "step_seconds"):
+        check(run["history/" + name].shape == (rows,), f"{name} has a row per step")
+    check(np.allclose(needle["tip"][:, 0], np.minimum(0.02 * run["history/time"][:], 0.03)),
+          "the rigid tip is where the base put it")
+    check(np.allclose(needle["base_force"][:, 0], needle["shaft_friction"][:], atol=1e-12),
+          "a straight rigid needle: axial base force = shaft friction")
+    depth = needle["depth"][:]
+    x, tets = run["mesh/coordinates"][:], run["mesh/tets"][:]
+    check(x.shape == (175, 3) and tets.max() == 174, "the whole mesh is there")
+    check(np.all(np.diff(run["mesh/node_tag"][:]) > 0), "nodes by ascending tag")
+    edges = x[tets[:, 1:]] - x[tets[:, :1]]
+    check(np.isclose(np.linalg.det(edges).sum() / 6, 0.06 * 0.04 * 0.04), "and has its volume")
+    p = run["provenance"]
+    names = [n.decode() for n in p["options/name"]]
+    values = [v.decode() for v in p["options/value"]]
+    sources = [s.decode() for s in p["options/source"]]
+    at = names.index("needle_needle_velocity")
+    check(values[at] == "0.02" and sources[at] == "command line", "resolved options with sources")
+    at = names.index("constraint_solver")
+    check(values[at] == "auto" and sources[at] == "default", "defaults are recorded as such")
+    for name in ("git_commit", "petsc_version", "hdf5_version", "gmsh_version", "mesh_hash_fnv1a",
+                 "command_line", "mpi_ranks"):
+        check(len(p[name][0]) > 0, f"provenance/{name}")
+    check(all("units" in d.attrs for d in p.values() if isinstance(d, h5py.Dataset)), "units there")
+check(without_units(os.path.join(folder, "run.h5")) == [], "every dataset of run.h5 has units")
+
+steps = sorted(os.listdir(os.path.join(folder, "fields")))
+check(steps == [f"step_{n:06d}.h5" for n in range(0, 51, 10)], f"field files {steps}")
+for step in steps:
+    path = os.path.join(folder, "fields", step)
+    check(without_units(path) == [], f"every dataset of {step} has units")
+    with h5py.File(path) as file:
+        check(file["displacement"].shape == (175, 3), f"{step}: displacement")
+        if step != steps[0]:
+            count = len(file["coupling/id"])
+            for name, columns in [("position", 3), ("lambda", 3), ("state", 0), ("tributary", 0)]:
+                shape = (count, columns) if columns else (count,)
+                check(file["coupling/" + name].shape == shape, f"{step}: coupling/{name}")
+            check(np.isclose(file["coupling/tributary"][:].sum(),
+                             depth[int(step[5:11])]), f"{step}: tributary lengths add to the depth")
+
+root = ElementTree.parse(os.path.join(folder, "run.xdmf")).getroot()
+items = list(root.iter("DataItem"))
+check(len(list(root.iter("Time"))) == len(steps), "run.xdmf has every step")
+for item in items:
+    file, dataset = item.text.split(":")
+    with h5py.File(os.path.join(folder, file)) as target:
+        shape = tuple(int(n) for n in item.get("Dimensions").split())
+        if target[dataset].shape != shape:
+            check(False, f"run.xdmf: {item.text} has shape {target[dataset].shape}, not {shape}")
+check(len(items) == 5 * len(steps), "run.xdmf: mesh, region, displacement, velocity per step")
+finish()

@@ -1,0 +1,91 @@
+"""What the end-to-end tests share: running the program and reading its results."""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+PROGRAM, ROOT = sys.argv[1], sys.argv[2]
+FOLDER = tempfile.mkdtemp(prefix="trocar_test_")
+MESHES = os.path.join(FOLDER, "meshes")
+os.makedirs(MESHES)
+problems = []
+
+
+def structured(name, *arguments):
+    """Makes a structured mesh and gives its path."""
+    path = os.path.join(MESHES, name + ".msh")
+    if not os.path.exists(path):
+        tool = os.path.join(ROOT, "meshes", "structured_beam")
+        subprocess.run([sys.executable, tool, *arguments, path], check=True)
+    return path
+
+
+def small_block():
+    return structured("small_block", *"--nodes 7 5 5 --size 0.06 0.04 0.04 --split 5".split())
+
+
+def options(file):
+    """Options of a file in options/ as a dict."""
+    found = {}
+    with open(os.path.join(ROOT, "options", file)) as stream:
+        for line in stream:
+            words = line.split("#")[0].split(None, 1)
+            if words:
+                found[words[0]] = words[1].strip() if len(words) > 1 else ""
+    return found
+
+
+def run(settings, ranks=1, arguments=(), timeout=120):
+    """Runs the program; settings is a dict of options. Gives the completed process."""
+    words = []
+    for name, value in settings.items():
+        words += [name] + ([value] if value != "" else [])
+    return subprocess.run(
+        ["mpirun", "-n", str(ranks), PROGRAM, *words, *arguments],
+        cwd=ROOT, capture_output=True, text=True, timeout=timeout)
+
+
+def completed(settings, ranks=1, **more):
+    """Runs and demands success; gives the folder of the results."""
+    folder = os.path.join(FOLDER, f"run_{len(os.listdir(FOLDER))}")
+    process = run({**settings, "-output_dir": folder, "-quiet": ""}, ranks, **more)
+    if process.returncode != 0:
+        print(process.stdout[-2000:], process.stderr[-2000:])
+        raise SystemExit(f"run failed with {process.returncode}")
+    return folder
+
+
+def histories(folder):
+    """All histories but wall times, by name."""
+    found = {}
+    with h5py.File(os.path.join(folder, "run.h5")) as run_file:
+        def keep(name, node):
+            if isinstance(node, h5py.Dataset) and "seconds" not in name:
+                found[name] = node[...]
+        run_file["history"].visititems(keep)
+    return found
+
+
+def ledger(folder):
+    with h5py.File(os.path.join(folder, "run.h5")) as run_file:
+        return {name: int(value) for name, value in run_file["ledger"].attrs.items()}
+
+
+def check(condition, what):
+    print(("ok      " if condition else "FAILED  ") + what)
+    if not condition:
+        problems.append(what)
+
+
+def error_lines(process):
+    return [line for line in process.stderr.splitlines() if line.startswith("trocar: error: ")]
+
+
+def finish():
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    raise SystemExit(1 if problems else 0)
