@@ -100,7 +100,8 @@ if os.geteuid() != 0:  # root writes everywhere
     os.chmod(closed, stat.S_IRUSR | stat.S_IXUSR)
     refuses("folder without permission", 74, ["closed"], {"-output_dir": closed + "/x"})
 
-process = run({**small, "-check": ""})
-check(process.returncode == 0 and not os.path.exists(small["-output_dir"] + "/run.h5"),
+unwritten = os.path.join(FOLDER, "unwritten")
+process = run({**small, "-check": "", "-output_dir": unwritten})
+check(process.returncode == 0 and not os.path.exists(unwritten),
       "-check stops after set-up and writes nothing")
 finish()
