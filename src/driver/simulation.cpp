@@ -199,7 +199,7 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
     r.value += push.value;
     scale += space_.norm(push);
   }
-  residual = scale > 0.0 ? space_.norm(r) / scale : 0.0;
+  residual = space_.norm(r) / scale;
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
     // are below round-off.

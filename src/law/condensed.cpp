@@ -29,12 +29,16 @@ Condensed::Condensed(const Problem& problem) : problem_(&problem), rows_(split_r
   bilateral_rank_ = reveal.rank;
   redundant_ = reveal.rank < static_cast<int>(rows_.bilateral.size());
   for (int row : reveal.rows) kept_.push_back(rows_.bilateral[static_cast<std::size_t>(row)]);
-  W_kept_.compute(problem.W(kept_, kept_));
-  const MatX W_bf = problem.W(kept_, rows_.box);
-  const MatX Z = W_kept_.solve(W_bf);
-  S_ = problem.W(rows_.box, rows_.box) - W_bf.transpose() * Z;
-  S_ = 0.5 * (S_ + S_.transpose()).eval();
-  s_ = problem.g(rows_.box) - Z.transpose() * problem.g(kept_);
+  S_ = problem.W(rows_.box, rows_.box);
+  s_ = problem.g(rows_.box);
+  if (!kept_.empty()) {
+    W_kept_.compute(problem.W(kept_, kept_));
+    const MatX W_bf = problem.W(kept_, rows_.box);
+    const MatX Z = W_kept_.solve(W_bf);
+    S_ -= W_bf.transpose() * Z;
+    S_ = 0.5 * (S_ + S_.transpose()).eval();
+    s_ -= Z.transpose() * problem.g(kept_);
+  }
   bound_ = problem.bound(rows_.box);
   if (!rows_.box.empty()) box_scale_ = problem.W.diagonal()(rows_.box).maxCoeff();
   start_ = problem.start(rows_.box).cwiseMax(-bound_).cwiseMin(bound_);
@@ -53,7 +57,7 @@ VecX Condensed::expand(const VecX& lambda_f) const
 {
   VecX lambda = VecX::Zero(problem_->rows());
   lambda(rows_.box) = lambda_f;
-  lambda(kept_) = bilateral(lambda_f);
+  if (!kept_.empty()) lambda(kept_) = bilateral(lambda_f);
   if (!redundant_) return lambda;
   const MatX W_bb = problem_->W(rows_.bilateral, rows_.bilateral);
   VecX least = lambda;

@@ -38,11 +38,11 @@ struct NeedleState
 /// The base (first `held` dofs) follows the prescribed motion.
 struct Linearised
 {
-  int held = 6;             ///< 6 for a beam, all dofs for a rigid needle
-  MatX A;                   ///< M/h² + K (dofs x dofs) [N/m ...]
-  VecX r;                   ///< weight - internal - inertia forces (dofs) [N, N m]
-  Eigen::LLT<MatX> factor;  ///< of A on the free dofs
-  VecX free_increment;      ///< A⁻¹ r on the free dofs
+  int held = 6;  ///< 6 for a beam, all dofs for a rigid needle
+  MatX A;        ///< M/h² + K (dofs x dofs) [N/m ...]
+  VecX r;        ///< weight - internal - inertia forces (dofs) [N, N m]
+  Eigen::LLT<MatX> factor{MatX::Identity(1, 1)};  ///< of A on the free dofs, when there are any
+  VecX free_increment;                            ///< A⁻¹ r on the free dofs
 };
 
 /// What the holder puts on the needle at its base, world axes, moment about the base.

@@ -97,6 +97,7 @@ ShaftPoint project(const Shaft& shaft, const Vec3& p)
       s = (static_cast<double>(e) + t) * shaft.element_length();
     }
   }
+  if (s >= shaft.length) s += std::max(0.0, (p - shaft.tip()).dot(shaft_at(shaft, s).tangent));
   return shaft_at(shaft, s);
 }
 
@@ -115,6 +116,10 @@ std::vector<std::pair<int, double>> lever(const Shaft& shaft, double s, const Ve
   };
   add(place.element, n.a, n.slope_a);
   add(place.element + 1, n.b, n.slope_b);
+  if (s > shaft.length) {  // beyond the tip the place turns with the last node
+    const Vec3 turn = (s - shaft.length) * shaft_at(shaft, shaft.length).tangent.cross(d);
+    for (int k = 0; k < 3; ++k) entries.emplace_back(6 * shaft.elements() + 3 + k, turn[k]);
+  }
   return entries;
 }
 

@@ -34,7 +34,8 @@ struct ShaftPoint
 /// The place at arc length s; beyond the ends the end tangents go on.
 ShaftPoint shaft_at(const Shaft& shaft, double s);
 
-/// The place nearest to p, on the shaft itself (0 <= s <= length).
+/// The place nearest to p, on the shaft or on its tangent beyond the tip (s > length): a point the
+/// tip has just left keeps a smooth gap until it is dropped.
 ShaftPoint project(const Shaft& shaft, const Vec3& p);
 
 /// d · δx(s) as a sum over nodal increments (δx, δθ), dof 6 i + k of node i: the row H_n of a

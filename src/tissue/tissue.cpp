@@ -52,6 +52,9 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
     scatter(share.replicate<1, 4>(), tet, weight_);
     elements_.push_back(element);
   }
+  double stiffest = 0.0;
+  for (const Material& m : settings_.materials) stiffest = std::max(stiffest, m.young);
+  smallest_scale_ = 1e-5 * stiffest * std::pow(mesh::quality(mesh).volume, 2.0 / 3.0);
   for (const Traction& traction : settings_.boundary.tractions)
     traction_.push_back(
         traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
@@ -227,6 +230,7 @@ OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const T
   rotations(space_->with_ghosts(u), R);
   OwnedField r = forces(old, u, R, step, &scale);
   fixed_.clear(r);
+  scale = std::max(scale, smallest_scale_);
   return r;
 }
 

@@ -67,7 +67,8 @@ class Tissue
   OwnedField respond(const OwnedField& forces);
 
   /// r = f_ext - f_int(u) - M(Δu/h - v)/h - BΔu/h [N] on free dofs, and the size of its terms.
-  /// `scale` gets ‖f_ext‖ + ‖f_int‖ + ‖inertia‖. Collective.
+  /// `scale` gets ‖f_ext‖ + ‖f_int‖ + ‖inertia‖, but at least 1e-5 E V^(2/3): an unloaded body is
+  /// in balance although its round-off is as large as its forces. Collective.
   OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
                       double& scale) const;
 
@@ -115,6 +116,7 @@ class Tissue
   fem::Dirichlet fixed_;
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
+  double smallest_scale_ = 0.0;    ///< 1e-5 E V^(2/3) [N]
   std::vector<Element> elements_;  ///< by local tet
   OwnedField weight_;              ///< ρ g V/4 per node [N]
   std::vector<OwnedField> traction_;
