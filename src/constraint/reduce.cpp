@@ -82,10 +82,12 @@ Reduced reduce(const Set& set, const fem::Space& space, const fem::OwnedField& f
 
   problem.bound.resize(set.size());
   problem.start.resize(set.size());
+  problem.softness.resize(set.size());
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
     problem.g[i] += row.gap;
     problem.bound[i] = row.bound;
+    problem.softness[i] = row.softness + row.relative_softness * problem.W(i, i);
     problem.start[i] = row.start;
     problem.kind.push_back(row.kind);
     problem.group.push_back(row.point);

@@ -28,9 +28,11 @@ struct Row
   std::vector<std::pair<int, double>> lever;  ///< (dof of the body, coefficient)
   double gap = 0.0;                           ///< δ at zero increments [m]
   law::RowKind kind = law::RowKind::bilateral;
-  double bound = 0.0;  ///< F of a box row [N]
-  double start = 0.0;  ///< multiplier to start from [N]
-  int point = 0;       ///< coupling point, ascending along the set
+  double bound = 0.0;              ///< F of a box row [N]
+  double softness = 0.0;           ///< c of a smooth row, δ = -c λ [m/N]
+  double relative_softness = 0.0;  ///< more softness, in units of the row's own W_ii
+  double start = 0.0;              ///< multiplier to start from [N]
+  int point = 0;                   ///< coupling point, ascending along the set
 };
 
 /// The rows of one step. Born and gone within it.

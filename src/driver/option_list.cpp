@@ -52,6 +52,12 @@ OptionSpec choice(const char* name, const char* fallback, std::vector<std::strin
   return spec;
 }
 
+OptionSpec withdrawal(const std::string& name)
+{
+  return {name, OptionType::real, "-1",  "",   "the same on withdrawal; -1 = as on the advance",
+          -1.0, infinity,         false, false};
+}
+
 /// Declares an option and its override for one named thing: tissue_young, tissue_<volume>_young.
 void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec, const std::string& group)
 {
@@ -136,6 +142,18 @@ std::vector<OptionSpec> build_table()
                 not_negative("insertion_friction_dynamic", "0", "N/m",
                              "shaft friction per length of a slipping point"),
                 "<volume>");
+  with_override(t,
+                not_negative("insertion_friction_viscous", "0", "N s/m^2",
+                             "shaft friction per length and slip velocity, needs time"),
+                "<volume>");
+  for (const char* kind : {"static", "dynamic", "viscous"}) {
+    OptionSpec spec = withdrawal("insertion_friction_" + std::string(kind) + "_withdraw");
+    with_override(t, spec, "<volume>");
+  }
+  t.push_back({"insertion_eta", OptionType::real, "0", "1",
+               "axial force as this part of the sticking one (the papers' law; depends on mesh and "
+               "step, for reproduction only); 0 = off",
+               0.0, 1.0, false, true});
   const std::vector<OptionSpec> rest{
       choice("constraint_solver", "auto", {"auto", "pgs", "hybrid", "active_set", "interior_point"},
              "solver of the dense constraint problem"),

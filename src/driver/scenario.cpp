@@ -109,6 +109,25 @@ tissue::TissueSettings read_tissue(Options& options, const mesh::Mesh& mesh, con
   return settings;
 }
 
+insertion::TissueFriction read_friction(Options& options, const std::string& volume)
+{
+  const std::string at = "insertion_<volume>_friction_";
+  const auto withdraw = [&](const std::string& kind, double advance) {
+    const double own = options.real(at + kind + "_withdraw", volume);
+    if (own < 0.0 && own != -1.0)
+      throw core::option_error("option -insertion_friction_" + kind +
+                               "_withdraw: must be -1 (as on the advance) or not negative");
+    return own < 0.0 ? advance : own;
+  };
+  insertion::TissueFriction friction;
+  friction.advance = {options.real(at + "static", volume), options.real(at + "dynamic", volume),
+                      options.real(at + "viscous", volume)};
+  friction.withdraw = {withdraw("static", friction.advance.static_limit),
+                       withdraw("dynamic", friction.advance.dynamic_limit),
+                       withdraw("viscous", friction.advance.viscous)};
+  return friction;
+}
+
 insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& mesh)
 {
   insertion::InsertionSettings settings;
@@ -118,8 +137,8 @@ insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& 
   settings.placement.spacing = options.real("insertion_spacing");
   settings.placement.merge = options.real("insertion_merge");
   for (const std::string& volume : mesh.volumes)
-    settings.friction.push_back({options.real("insertion_<volume>_friction_static", volume),
-                                 options.real("insertion_<volume>_friction_dynamic", volume)});
+    settings.friction.push_back(read_friction(options, volume));
+  settings.eta = options.real("insertion_eta");
   settings.stick_tolerance = options.real("constraint_tolerance");
   return settings;
 }
@@ -156,6 +175,16 @@ OutputSettings read_output(Options& options)
   return output;
 }
 
+void refuse_dashpots_without_time(const Scenario& scenario)
+{
+  if (scenario.time.analysis == Analysis::dynamic || scenario.time.end > 0.0) return;
+  for (const auto& friction : scenario.insertion.friction)
+    if (friction.advance.viscous > 0.0 || friction.withdraw.viscous > 0.0)
+      throw core::option_error(
+          "option -insertion_friction_viscous: one static equilibrium takes no time; give "
+          "-time_end for a quasi-static path");
+}
+
 void add_warnings(Scenario& scenario)
 {
   for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
@@ -179,6 +208,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.mesh = io::read_gmsh(file, options.real("mesh_scale"), comm);
   scenario.tissue = read_tissue(options, scenario.mesh, comm);
   scenario.insertion = read_insertion(options, scenario.mesh);
+  refuse_dashpots_without_time(scenario);
   scenario.needles = read_needles(options, scenario.mesh, scenario.time.end, comm);
   const std::string provider = options.text("compliance_provider");
   const bool one_by_one = provider == "ksp" || (provider == "auto" && tissue_solver_given());

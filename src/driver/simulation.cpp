@@ -88,7 +88,7 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
     for (std::size_t i = 0; i < needles_.size(); ++i)
       needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
 
-    const Rows rows = coupling_rows(next);  // 3 rows H, gaps, laws
+    const Rows rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
     Correction correction;
     if (!rows.set.empty()) {  // 4 W and g, then the laws
       const auto trouble = solve_constraints(rows, tissue.increment, needles, correction, report);
@@ -126,7 +126,7 @@ void Simulation::move_needles(const State& old, State& next) const
   }
 }
 
-Simulation::Rows Simulation::coupling_rows(State& next) const
+Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, State& next) const
 {
   Rows rows;
   const bool coupled = std::any_of(next.insertions.begin(), next.insertions.end(),
@@ -134,9 +134,10 @@ Simulation::Rows Simulation::coupling_rows(State& next) const
   if (!coupled) return rows;
   const fem::GlobalField u = space_.gather(next.tissue.u);
   const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
+  const double passing = now.t > 0.0 ? now.h : 0.0;  // the start takes no time
   for (std::size_t i = 0; i < needles_.size(); ++i)
     rows.of_needle.push_back(insertion_->add_rows(next.insertions[i], next.needles[i].shaft, tissue,
-                                                  static_cast<int>(i), rows.set));
+                                                  static_cast<int>(i), passing, rows.set));
   return rows;
 }
 
@@ -211,7 +212,7 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
   if (residual > balance_tolerance) return false;
   // The rows turn with the shaft: the gaps of the new geometry must be closed as well.
   State probe = next;
-  const Rows again = coupling_rows(probe);
+  const Rows again = coupling_rows(now, probe);
   for (const constraint::Row& row : again.set.rows())
     if (row.kind == law::RowKind::bilateral &&
         std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, 1e-9))

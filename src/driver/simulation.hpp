@@ -101,7 +101,7 @@ class Simulation
   };
 
   void move_needles(const State& old, State& next) const;
-  Rows coupling_rows(State& next) const;
+  Rows coupling_rows(const core::TimeStep& now, State& next) const;
   std::optional<std::string> solve_constraints(const Rows& rows,
                                                const fem::OwnedField& free_increment,
                                                const std::vector<needle::Linearised>& needles,

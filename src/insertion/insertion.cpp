@@ -43,9 +43,14 @@ InsertionState Insertion::start(const needle::Needle& needle) const
                            "': the inserted part lies outside the tissue (check -needle_entry, "
                            "-needle_direction and -needle_inserted)");
   state.phase = Phase::inserted;
-  CouplingPoint resting;
-  resting.unplaced = true;
-  add_points_behind(state, state.path.length(), resting);
+  add_points_behind(state, state.path.length(), {});
+  const fem::GlobalField undeformed{core::VecX::Zero(3 * mesh_->node_count())};
+  const Deformed tissue(*mesh_, *locator_, undeformed);
+  const needle::Shaft shaft = needle.initial().shaft;
+  for (CouplingPoint& point : state.points) {
+    const Site& site = state.path.sites[static_cast<std::size_t>(point.site)];
+    point.needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
+  }
   return state;
 }
 
@@ -84,6 +89,7 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
   // A tip outside the tissue in front of the entry has left the channel, whatever the map says.
   if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
   next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;
+  if (std::abs(arc - old.tip_arc) > tolerance) next.withdrawing = arc < old.tip_arc;
   drop_points_ahead(next, arc);
   add_points_behind(next, arc, born);
   return next;
@@ -143,50 +149,70 @@ core::MatX Insertion::tributary_lengths(const InsertionState& state) const
   return length;
 }
 
+/// Limits [N] and dashpot [N s/m] of one point: the laws of the tissues its piece of path is in.
+Friction Insertion::friction_of(const InsertionState& state, const core::MatX& tributary,
+                                std::size_t point) const
+{
+  Friction sum;
+  for (std::size_t region = 0; region < settings_.friction.size(); ++region) {
+    const double length =
+        tributary(static_cast<Eigen::Index>(point), static_cast<Eigen::Index>(region));
+    const TissueFriction& both = settings_.friction[region];
+    const Friction& law = state.withdrawing ? both.withdraw : both.advance;
+    sum.static_limit += length * law.static_limit;
+    sum.dynamic_limit += length * law.dynamic_limit;
+    sum.viscous += length * law.viscous;
+  }
+  return sum;
+}
+
 std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::Shaft& shaft,
-                                           const Deformed& tissue, int body,
+                                           const Deformed& tissue, int body, double h,
                                            constraint::Set& set) const
 {
   std::vector<PointRows> rows;
   const core::MatX tributary = tributary_lengths(state);
   for (std::size_t k = 0; k < state.points.size(); ++k) {
     CouplingPoint& point = state.points[k];
-    const constraint::Anchor& anchor =
-        state.path.sites[static_cast<std::size_t>(point.site)].anchor;
-    const Vec3 p = tissue.position(anchor);
-    const needle::ShaftPoint on_shaft = needle::project(shaft, p);
-    if (point.unplaced) point.needle_arc = on_shaft.s;
-    point.unplaced = false;
-
-    double bound = 0.0;
-    for (std::size_t region = 0; region < settings_.friction.size(); ++region) {
-      const Friction& friction = settings_.friction[region];
-      const double tau = point.stuck ? friction.static_limit : friction.dynamic_limit;
-      bound += tau * tributary(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(region));
-    }
-    PointRows mine{set.size(), -1};
     constraint::Row row;
-    row.anchor = anchor;
+    row.anchor = state.path.sites[static_cast<std::size_t>(point.site)].anchor;
+    const Vec3 p = tissue.position(row.anchor);
+    const needle::ShaftPoint on_shaft = needle::project(shaft, p);
+    PointRows mine{set.size(), -1, -1};
     row.body = body;
     row.point = mine.first;
-    for (int lateral = 0; lateral < 2; ++lateral) {
-      row.direction = lateral == 0 ? on_shaft.normal_1 : on_shaft.normal_2;
-      row.gap = row.direction.dot(p - on_shaft.x);
-      row.lever = needle::lever(shaft, on_shaft.s, row.direction);
-      row.start = point.lambda[lateral];
+    const auto add = [&](const Vec3& direction, double gap, double start) {
+      row.direction = direction;
+      row.gap = gap;
+      row.lever = needle::lever(shaft, on_shaft.s, direction);
+      row.start = start;
       set.add(row);
-    }
-    if (bound > 0.0) {
-      mine.axial = set.size();
-      row.kind = law::RowKind::box;
-      row.bound = bound;
-      row.direction = on_shaft.tangent;
-      row.gap = on_shaft.s - point.needle_arc;
-      row.lever = needle::lever(shaft, on_shaft.s, row.direction);
-      row.start = point.lambda[2];
-      set.add(row);
+      return set.size() - 1;
+    };
+    add(on_shaft.normal_1, on_shaft.normal_1.dot(p - on_shaft.x), point.lambda[0]);
+    add(on_shaft.normal_2, on_shaft.normal_2.dot(p - on_shaft.x), point.lambda[1]);
+
+    const Friction friction = friction_of(state, tributary, k);
+    const double slid = on_shaft.s - point.needle_arc;
+    const double bound = point.stuck ? friction.static_limit : friction.dynamic_limit;
+    if (settings_.eta > 0.0) {
+      row.relative_softness = (1.0 - settings_.eta) / settings_.eta;
+      mine.axial = add(on_shaft.tangent, slid, point.lambda[2]);
     } else {
-      point.needle_arc = on_shaft.s;  // nothing holds it: it sticks, if ever, where it is then
+      if (h > 0.0 && friction.viscous > 0.0) {
+        row.softness = h / friction.viscous;
+        mine.viscous = add(on_shaft.tangent, slid, 0.0);
+        row.softness = 0.0;
+      }
+      if (bound > 0.0) {
+        row.kind = law::RowKind::box;
+        row.bound = bound;
+        mine.axial = add(on_shaft.tangent, slid, point.lambda[2]);
+      }
+    }
+    if (mine.axial < 0 && mine.viscous < 0) {  // nothing holds it: it follows the shaft
+      point.stuck = std::abs(slid) <= settings_.stick_tolerance;
+      point.needle_arc = on_shaft.s;
     }
     rows.push_back(mine);
   }
@@ -201,14 +227,17 @@ CouplingReport Insertion::accept(InsertionState& state, const std::vector<PointR
     CouplingPoint& point = state.points[k];
     point.lambda.setZero();
     point.lambda.head<2>() = multipliers.lambda.segment<2>(rows[k].first);
-    if (rows[k].axial < 0) continue;
-    const double lambda = multipliers.lambda[rows[k].axial];
-    const double slip = multipliers.delta[rows[k].axial];
-    point.lambda[2] = lambda;
+    for (int row : {rows[k].axial, rows[k].viscous}) {
+      if (row < 0) continue;
+      point.lambda[2] += multipliers.lambda[row];
+      report.friction_work += multipliers.lambda[row] * multipliers.delta[row];
+    }
+    report.shaft_friction += point.lambda[2];
+    const int axial = std::max(rows[k].axial, rows[k].viscous);  // both see the same slip
+    if (axial < 0) continue;
+    const double slip = multipliers.delta[axial];
     point.stuck = std::abs(slip) <= settings_.stick_tolerance;
     if (!point.stuck) point.needle_arc += slip;
-    report.shaft_friction += lambda;
-    report.friction_work += lambda * slip;
   }
   return report;
 }

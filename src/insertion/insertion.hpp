@@ -22,7 +22,6 @@ struct CouplingPoint
   double needle_arc = 0.0;     ///< arc length on the needle it sticks to [m]; moves only in slip
   bool stuck = true;           ///< at the end of the last step
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
-  bool unplaced = false;  ///< made on the undeformed mesh: takes its needle_arc where it is now
 };
 
 /// How one needle sits in the tissue. A value, equal on every rank.
@@ -31,35 +30,45 @@ struct InsertionState
   Phase phase = Phase::outside;
   Path path;
   double tip_arc = 0.0;               ///< where the tip is along the path [m]
+  bool withdrawing = false;           ///< the tip last moved backwards along the path
   std::vector<CouplingPoint> points;  ///< by site, all at or behind the tip
 };
 
-/// Shaft friction per length of one tissue (box law, DESIGN section 4).
+/// Shaft friction per length of one tissue in one direction (docs/theory.md section 5).
 struct Friction
 {
   double static_limit = 0.0;   ///< F/ℓ of a point that stuck at the start of the step [N/m]
   double dynamic_limit = 0.0;  ///< F/ℓ of a slipping point [N/m]
+  double viscous = 0.0;        ///< b: force per length and slip velocity [N s/m²]
+};
+
+/// Friction of one tissue while the needle advances and while it is withdrawn.
+struct TissueFriction
+{
+  Friction advance, withdraw;
 };
 
 struct InsertionSettings
 {
   PlacementSettings placement;
-  std::vector<Friction> friction;  ///< by volume of the mesh
-  double stick_tolerance = 1e-9;   ///< |δ| below which a point has stuck [m]
+  std::vector<TissueFriction> friction;  ///< by volume of the mesh
+  double eta = 0.0;  ///< > 0: the axial force is η times that of sticking, instead of all friction
+  double stick_tolerance = 1e-9;  ///< |δ| below which a point has stuck [m]
 };
 
 /// Which rows a coupling point got in a set, and where it was on the shaft.
 struct PointRows
 {
-  int first = 0;   ///< first of two lateral rows
-  int axial = -1;  ///< row of the axial law, -1 when its bound is 0
+  int first = 0;     ///< first of two lateral rows
+  int axial = -1;    ///< row of the box (or η) law, -1 when there is none
+  int viscous = -1;  ///< row of the dashpot, -1 when there is none
 };
 
 /// What one needle's coupling did in a step.
 struct CouplingReport
 {
   double shaft_friction = 0.0;  ///< Σ axial λ [N], > 0 resists insertion
-  double friction_work = 0.0;   ///< Σ λ δ of the axial rows [J], <= 0
+  double friction_work = 0.0;   ///< Σ λ δ of the axial rows [J], <= 0 (η law: no such bound)
 };
 
 /// The coupling of needles and tissue: path, coupling points and their rows.
@@ -80,9 +89,10 @@ class Insertion
                          const Deformed& tissue) const;
 
   /// Adds this needle's rows at the iterate (deformed tissue and shaft); `body` is its index among
-  /// the small bodies.
+  /// the small bodies, `h` the step length [s], 0 when no time passes: dashpots are then absent.
   std::vector<PointRows> add_rows(InsertionState& state, const needle::Shaft& shaft,
-                                  const Deformed& tissue, int body, constraint::Set& set) const;
+                                  const Deformed& tissue, int body, double h,
+                                  constraint::Set& set) const;
 
   /// Takes multipliers and end-of-step gaps back into the points: stick or slip.
   CouplingReport accept(InsertionState& state, const std::vector<PointRows>& rows,
@@ -96,6 +106,8 @@ class Insertion
   core::MatX tributary_lengths(const InsertionState& state) const;
 
  private:
+  Friction friction_of(const InsertionState& state, const core::MatX& tributary,
+                       std::size_t point) const;
   void drop_points_ahead(InsertionState& state, double arc) const;
   void add_points_behind(InsertionState& state, double arc, const CouplingPoint& born) const;
   bool passed(const InsertionState& state, std::size_t site, double arc) const;

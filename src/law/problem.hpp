@@ -25,8 +25,11 @@ struct Problem
   VecX g;                     ///< violation after free motion (rows) [m]
   std::vector<RowKind> kind;  ///< per row
   VecX bound;                 ///< F >= 0 (rows) [N]; ignored on bilateral rows
-  std::vector<int> group;     ///< coupling point of each row, ascending: PGS solves them together
-  VecX start;                 ///< multipliers to start from (rows) [N]
+  /// Smooth rows: a bilateral row with softness c obeys δ = -c λ, a linear dashpot or spring
+  /// (rows, or empty: all hard) [m/N].
+  VecX softness;
+  std::vector<int> group;  ///< coupling point of each row, ascending: PGS solves them together
+  VecX start;              ///< multipliers to start from (rows) [N]
 
   Eigen::Index rows() const { return g.size(); }
 };

@@ -76,6 +76,8 @@ Problem restrict(const Problem& problem, const std::vector<int>& rows)
 {
   Problem part;
   part.W = problem.W(rows, rows);
+  // A soft row is a hard one in series with its softness.
+  if (problem.softness.size() > 0) part.W.diagonal() += problem.softness(rows);
   part.g = problem.g(rows);
   part.bound = problem.bound(rows);
   part.start = problem.start(rows);

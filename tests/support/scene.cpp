@@ -22,7 +22,7 @@ driver::Scenario needle_scenario(const BlockShape& shape)
   needle.motion.velocity = 0.02;
   needle.motion.depth = 0.04;
   scenario.needles = {needle};
-  scenario.insertion.friction = {{10.0, 10.0}};
+  scenario.insertion.friction = same({10.0, 10.0, 0.0});
   return scenario;
 }
 

@@ -8,6 +8,12 @@
 
 namespace trocar::test {
 
+/// One tissue with the same friction in both directions.
+inline std::vector<insertion::TissueFriction> same(const insertion::Friction& friction)
+{
+  return {{friction, friction}};
+}
+
 /// A needle through a block 6 x 4 x 4 cm, held below; a scenario that tests change as they like.
 driver::Scenario needle_scenario(const BlockShape& shape);
 

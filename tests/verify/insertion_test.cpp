@@ -33,7 +33,7 @@ TEST(Friction, IsTauTimesDepthWheneverEverythingSlips)
       scenario.insertion.placement = placement;
       // One step advances 0.5 mm; τ ℓ W_kk is about 1 N/m * 0.01 m * 3e-3 m/N = 3e-5 m.
       scenario.needles[0].motion.velocity = 0.025;
-      scenario.insertion.friction = {{1.0, 1.0}};
+      scenario.insertion.friction = test::same({1.0, 1.0, 0.0});
       scenario.time.end = 1.5;
       const test::Run run = test::run(scenario);
       int slipping = 0;
@@ -53,7 +53,7 @@ TEST(Friction, OnlyDissipates)
   scenario.tissue.model = tissue::Model::corotational;
   scenario.needles[0].motion.hold = 0.2;
   scenario.needles[0].motion.withdraw_velocity = 0.03;
-  scenario.insertion.friction = {{14.0, 9.0}};
+  scenario.insertion.friction = test::same({14.0, 9.0, 0.0});
   scenario.time.end = 4.0;
   double worst = 0.0, total = 0.0;
   for (const auto& report : test::run(scenario).reports) {
@@ -72,7 +72,7 @@ TEST(Friction, BreaksAwayAtTheStaticLimit)
   needle::BaseMotion& motion = scenario.needles[0].motion;
   motion.inserted = motion.depth = 0.04;
   motion.withdraw_velocity = 0.001;
-  scenario.insertion.friction = {{4.0, 2.0}};
+  scenario.insertion.friction = test::same({4.0, 2.0, 0.0});
   scenario.time.step = 0.01;
   scenario.time.end = 3.0;
   const test::Run run = test::run(scenario);
@@ -85,6 +85,70 @@ TEST(Friction, BreaksAwayAtTheStaticLimit)
   EXPECT_LE(peak, 4.0 * 0.04 + 1e-9);
   ASSERT_TRUE(all_slip(run.states.back().insertions[0]));
   EXPECT_NEAR(-last.coupling.shaft_friction, 2.0 * last.depth, 1e-9);
+}
+
+// A dashpot per length: F = b v depth once the tissue moves no more, in proportion to velocity, and
+// it relaxes when the needle stops.
+TEST(Friction, ViscousForceFollowsVelocityAndRelaxes)
+{
+  double per_velocity = 0.0;
+  for (double velocity : {0.002, 0.004}) {
+    driver::Scenario scenario = test::needle_scenario(distorted);
+    needle::BaseMotion& motion = scenario.needles[0].motion;
+    motion.inserted = 0.03;
+    motion.velocity = velocity;
+    motion.depth = 0.031;
+    motion.hold = 1e9;
+    scenario.insertion.friction = test::same({0.0, 0.0, 200.0});
+    scenario.time.step = 2e-5 / velocity;
+    scenario.time.end = 0.0008 / velocity;
+    const test::Run run = test::run(scenario);
+    const auto& last = run.reports.back().needles[0];
+    // The tissue still creeps after 0.8 mm, by a few per cent of the needle's speed.
+    EXPECT_NEAR(last.coupling.shaft_friction / (200.0 * velocity * last.depth), 1.0, 0.1);
+    if (per_velocity > 0.0) {
+      EXPECT_NEAR(last.coupling.shaft_friction / velocity / per_velocity, 1.0, 0.1);
+    }
+    per_velocity = last.coupling.shaft_friction / velocity;
+    for (const auto& report : run.reports)
+      EXPECT_LE(report.needles[0].coupling.friction_work, 1e-15);
+    scenario.time.end = 0.001 / velocity + 1.0;
+    EXPECT_LT(std::abs(test::run(scenario).reports.back().needles[0].coupling.shaft_friction),
+              0.01 * last.coupling.shaft_friction);
+  }
+}
+
+TEST(Friction, MayDifferOnWithdrawal)
+{
+  driver::Scenario scenario = test::needle_scenario(plain);
+  scenario.insertion.friction = {{{2.0, 2.0, 0.0}, {0.5, 0.5, 0.0}}};
+  scenario.needles[0].motion.withdraw_velocity = 0.02;
+  scenario.time.end = 3.0;
+  const test::Run run = test::run(scenario);
+  int slipping = 0;
+  for (std::size_t n = 110; n < run.states.size(); ++n) {
+    if (!all_slip(run.states[n].insertions[0])) continue;
+    ++slipping;
+    const auto& needle = run.reports[n].needles[0];
+    EXPECT_NEAR(needle.coupling.shaft_friction, -0.5 * needle.depth, 1e-9);
+  }
+  EXPECT_GT(slipping, 20);
+}
+
+TEST(Friction, EtaIsThatPartOfSticking)
+{
+  // One point, one step: λ_η = η λ_stick with the lateral forces held; they shift it a little.
+  const auto axial = [](double eta) {
+    driver::Scenario scenario = test::needle_scenario(plain);
+    scenario.needles[0].motion.inserted = 0.004;
+    scenario.insertion.placement = {Placement::spacing, 0.005, 0.3};
+    scenario.insertion.eta = eta;
+    scenario.time.end = 0.02;
+    return test::run(scenario).reports.back().needles[0].coupling.shaft_friction;
+  };
+  const double stick = axial(1.0 - 1e-12);
+  EXPECT_GT(stick, 1e-3);
+  EXPECT_NEAR(axial(0.3), 0.3 * stick, 0.1 * 0.3 * stick);
 }
 
 // What the holder puts in is what the tissue feels. The tissue's side is taken from its own
@@ -204,7 +268,7 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   const fem::GlobalField u{core::VecX::Zero(3 * body.mesh.node_count())};
   constraint::Set set;
   insertion.add_rows(state, needle.initial().shaft, insertion::Deformed(body.mesh, locator, u), 0,
-                     set);
+                     0.02, set);
   const double h = 0.02;
   const core::TimeStep now{h, h, false};
   const tissue::TissueState rest = body.tissue.at_rest();
@@ -250,8 +314,8 @@ TEST(PaperBeam, RowCountsOfTableOne)
                                       {0.0004, 752}}) {
     const mesh::Mesh mesh = test::block({49, 5, 5, Vec3(0.15, 0.02, 0.02)});
     const mesh::Locator locator(mesh);
-    const insertion::Insertion insertion(mesh, locator,
-                                         {{Placement::spacing, spacing, 0.3}, {{0.0, 0.0}}, 1e-9});
+    const insertion::Insertion insertion(
+        mesh, locator, {{Placement::spacing, spacing, 0.3}, test::same({}), 0.0, 1e-9});
     needle::NeedleSettings settings;
     settings.section = {0.0005, 0.0, 2e11, 0.3};
     settings.motion.entry = Vec3(0, 0.0093, 0.0107);
@@ -262,7 +326,7 @@ TEST(PaperBeam, RowCountsOfTableOne)
     const fem::GlobalField u{core::VecX::Zero(3 * mesh.node_count())};
     constraint::Set set;
     insertion.add_rows(state, needle.initial().shaft, insertion::Deformed(mesh, locator, u), 0,
-                       set);
+                       0.02, set);
     EXPECT_EQ(set.size(), rows);
   }
 }

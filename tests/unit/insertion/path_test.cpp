@@ -207,7 +207,8 @@ TEST(Tributary, LengthsAddUpToTheDepthWhateverTheMesh)
   const Scene scene(shape);
   for (const PlacementSettings& placement :
        {PlacementSettings{}, raw, PlacementSettings{Placement::spacing, 0.0031, 0.3}}) {
-    const Insertion insertion(scene.mesh, scene.locator, {placement, {{1, 1}}, 1e-9});
+    const Insertion insertion(scene.mesh, scene.locator,
+                              {placement, {{{1, 1, 0}, {1, 1, 0}}}, 0.0, 1e-9});
     needle::NeedleSettings settings;
     settings.model = needle::Model::rigid;
     settings.section = {0.0005, 0.0, 2e11, 0.3};

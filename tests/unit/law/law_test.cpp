@@ -94,6 +94,20 @@ TEST(Solvers, StickInsideTheBoxAndSlipOnIt)
   }
 }
 
+TEST(Solvers, SoftRowsYieldInProportionToTheirForce)
+{
+  Problem problem = random_problem(6, 40, 5);
+  problem.softness = VecX::Zero(problem.rows());
+  for (Eigen::Index i = 0; i < problem.rows(); i += 3) problem.softness[i] = 2e-4;
+  for (Method method : {Method::automatic, Method::hybrid, Method::pgs}) {
+    const Multipliers answer =
+        solve(problem, {.method = method, .tolerance = 1e-11, .max_iterations = 100000});
+    ASSERT_TRUE(answer.converged) << answer.why;
+    for (Eigen::Index i = 0; i < problem.rows(); i += 3)
+      EXPECT_NEAR(answer.delta[i], -2e-4 * answer.lambda[i], 2e-11);
+  }
+}
+
 TEST(Solvers, ARowThatNothingCanMoveHasNoForceAndKeepsItsGap)
 {
   Problem problem = random_problem(3, 20, 1);
