@@ -63,6 +63,26 @@ void check_needle_names(const std::vector<std::string>& names)
                                  "' begins another option of the needle's area");
 }
 
+/// Along a trajectory the base must stay outside and the tip must meet the tissue at least once.
+void check_trajectory_places(const needle::BaseMotion& motion, const insertion::Deformed& tissue,
+                             const std::string& who)
+{
+  const auto& rows = motion.trajectory->rows;
+  bool meets = false;
+  needle::Pose last = motion.at(rows.front().front());
+  for (const auto& row : rows) {
+    const needle::Pose pose = motion.at(row.front());
+    if (tissue.meets(last.x, pose.x + 1e-9 * motion.length * pose.R.col(0)))
+      throw core::data_error(who + "its base would enter the tissue before t = " +
+                             core::shown(row.front()) + " s of " + motion.trajectory->file);
+    meets = meets || tissue.meets(pose.x, pose.x + motion.length * pose.R.col(0));
+    last = pose;
+  }
+  if (!meets)
+    throw core::data_error(who + "along " + motion.trajectory->file +
+                           " its shaft never meets the tissue (at the times given)");
+}
+
 /// Refuses needles that can never do what they are told, before anything is computed.
 void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh,
                   const mesh::Locator& locator, double end)
@@ -75,11 +95,6 @@ void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh
     if (locator.tet_at(x) >= 0)
       throw core::data_error(who + "its base would enter the tissue " + when);
   };
-  if (motion.trajectory) {
-    for (const auto& row : motion.trajectory->rows)
-      base_outside(core::Vec3(row[1], row[2], row[3]), "in " + motion.trajectory->file);
-    return;
-  }
   if (std::max(motion.depth, motion.inserted) > motion.length)
     throw core::data_error(who + "its base would enter the tissue: depth " +
                            core::shown(std::max(motion.depth, motion.inserted)) +
@@ -91,6 +106,10 @@ void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh
                            "its shaft would start inside the tissue, outside its path "
                            "(check -needle_entry and -needle_direction; -needle_inserted "
                            "gives the depth at the start)");
+  if (motion.trajectory) {
+    check_trajectory_places(motion, tissue, who);
+    return;
+  }
   const double reach =
       std::max({motion.depth, motion.inserted, motion.velocity > 0.0 ? 1e-9 : 0.0});
   const core::Vec3 far = motion.entry + (reach > 0.0 ? reach : 1e-9) * motion.direction;

@@ -87,6 +87,11 @@ Invocation read_invocation(int argc, char** argv, const base::Comm& comm)
   if (!invocation.arguments.empty() && invocation.arguments.back() == "-options_file")
     throw core::option_error("option -options_file: a file name must follow");
   base::on_root(comm, [&] {
+    const char* environment = std::getenv("PETSC_OPTIONS");
+    std::istringstream words(environment ? environment : "");
+    for (std::string word, file; words >> word;)
+      if (word == "-options_file" && words >> file && !std::ifstream(file))
+        throw core::option_error("PETSC_OPTIONS: -options_file: no such file '" + file + "'");
     if (invocation.options_file.empty()) return;
     std::ifstream stream(invocation.options_file);
     if (!stream)
@@ -98,6 +103,21 @@ Invocation read_invocation(int argc, char** argv, const base::Comm& comm)
   });
   comm.broadcast(invocation.options_file_text);
   return invocation;
+}
+
+void apply_arguments(const Invocation& invocation)
+{
+  const auto& words = invocation.arguments;
+  const auto is_name = [&](std::size_t i) {
+    return i < words.size() && words[i].size() > 1 && words[i][0] == '-' &&
+           std::isalpha(static_cast<unsigned char>(words[i][1]));
+  };
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (!is_name(i) || words[i] == "-options_file") continue;
+    const bool has_value = i + 1 < words.size() && !is_name(i + 1);
+    TROCAR_PETSC(PetscOptionsSetValue(nullptr, words[i].c_str(),
+                                      has_value ? words[i + 1].c_str() : nullptr));
+  }
 }
 
 core::Csv read_csv(const std::string& file, const base::Comm& comm)

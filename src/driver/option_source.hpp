@@ -21,6 +21,10 @@ struct Invocation
 /// Reads the arguments and the options file; a missing file is a Failure (64). Collective.
 Invocation read_invocation(int argc, char** argv, const base::Comm& comm);
 
+/// Gives the arguments to PETSc once more, after its start: PETSc lets an options file win over
+/// arguments that stand before it, we let the command line win always.
+void apply_arguments(const Invocation& invocation);
+
 /// A CSV file that an option names, read on rank 0 and parsed on every rank. Failure (65).
 /// Collective.
 core::Csv read_csv(const std::string& file, const base::Comm& comm);

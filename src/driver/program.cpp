@@ -81,6 +81,7 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
 {
   const Invocation invocation = read_invocation(argc, argv, comm);
   const base::PetscSession petsc(&argc, &argv);
+  apply_arguments(invocation);
   core::Options options(option_table(), take_options(invocation));
   const Scenario scenario = read_scenario(options, comm);
   const core::Stopwatch watch;
@@ -109,7 +110,7 @@ bool all_ranks_failed(MPI_Comm comm)
 {
   MPI_Request request = MPI_REQUEST_NULL;
   if (MPI_Ibarrier(comm, &request) != MPI_SUCCESS) return false;
-  for (int tenth = 0; tenth < 200; ++tenth) {
+  for (int tick = 0; tick < 200; ++tick) {
     int done = 0;
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);
     if (done) return true;

@@ -34,8 +34,19 @@ std::string mpi_version()
   return {text, static_cast<std::size_t>(length)};
 }
 
+/// Every option in PETSc's database, its own solvers' included, as one line.
+std::string petsc_options()
+{
+  char* text = nullptr;
+  TROCAR_PETSC(PetscOptionsGetAll(nullptr, &text));
+  const std::string all = text;
+  TROCAR_PETSC(PetscFree(text));
+  return all;
+}
+
 io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
-                          const std::vector<core::ResolvedOption>& options)
+                          const std::vector<core::ResolvedOption>& options,
+                          const std::string& solver)
 {
   io::Provenance p;
   p.texts = {{"program", "trocar"},
@@ -52,6 +63,8 @@ io::Provenance provenance(const Simulation& simulation, const Invocation& invoca
              {"mpi_version", mpi_version()},
              {"options_file_name", invocation.options_file},
              {"options_file", invocation.options_file_text},
+             {"petsc_options", petsc_options()},
+             {"tissue_solver", solver},
              {"mesh_file", simulation.scenario().mesh.file},
              {"mesh_hash_fnv1a", simulation.scenario().mesh.hash}};
   std::vector<std::string> names, values, units, sources;
@@ -87,6 +100,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                {"constraint/rank", 0, "1"},
                                {"constraint/iterations", 0, "1"},
                                {"constraint/residual", 0, "m"},
+                               {"constraint/smallest_gap", 0, "m"},
                                {"compliance/probes", 0, "1"},
                                {"compliance/new_probes", 0, "1"},
                                {"compliance/reused_probes", 0, "1"},
@@ -99,6 +113,18 @@ std::vector<io::Series> series_of(const Scenario& scenario)
 std::vector<double> components(const Vec3& v)
 {
   return {v.x(), v.y(), v.z()};
+}
+
+/// Least distance along the path between neighbouring coupling points; 0 with fewer than two.
+double smallest_gap(const State& state)
+{
+  double smallest = 0.0;
+  for (const auto& insertion : state.insertions)
+    for (std::size_t k = 1; k < insertion.points.size(); ++k) {
+      const double gap = insertion.path.sites[k].arc - insertion.path.sites[k - 1].arc;
+      smallest = smallest > 0.0 ? std::min(smallest, gap) : gap;
+    }
+  return smallest;
 }
 
 std::vector<std::vector<double>> history_row(const Simulation& simulation, const State& state,
@@ -124,7 +150,7 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
   }
   for (double value :
        {static_cast<double>(report.rows), static_cast<double>(report.rank),
-        static_cast<double>(report.iterations), report.residual,
+        static_cast<double>(report.iterations), report.residual, smallest_gap(state),
         static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
         static_cast<double>(report.compliance.reused), build_seconds,
         static_cast<double>(report.linearisations), seconds})
@@ -159,7 +185,7 @@ std::vector<io::Field> coupling_fields(const Simulation& simulation, const State
         x += anchor.weight[static_cast<Eigen::Index>(a)] *
              (simulation.scenario().mesh.x[static_cast<std::size_t>(anchor.node[a])] +
               u.node(anchor.node[a]));
-      id.values.push_back(1e6 * static_cast<double>(n) + point.site);
+      id.values.push_back(1e6 * static_cast<double>(n) + insertion.path.first_id + point.site);
       position.values.insert(position.values.end(), x.data(), x.data() + 3);
       lambda.values.insert(lambda.values.end(), point.lambda.data(), point.lambda.data() + 3);
       stuck.values.push_back(point.stuck ? 0.0 : 1.0);
@@ -195,10 +221,11 @@ std::string build_description()
 Recorder::Recorder(const Simulation& simulation, const Invocation& invocation,
                    const std::vector<core::ResolvedOption>& options)
 {
+  const std::string solver = simulation.tissue().describe_solver();
   base::on_root(simulation.space().comm(), [&] {
     const Scenario& scenario = simulation.scenario();
     results_.emplace(scenario.output.folder, scenario.mesh,
-                     provenance(simulation, invocation, options), series_of(scenario));
+                     provenance(simulation, invocation, options, solver), series_of(scenario));
   });
 }
 

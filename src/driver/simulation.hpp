@@ -98,6 +98,7 @@ class Simulation
     fem::OwnedField push;            ///< Hᵀλ on the tissue [N]
     std::vector<core::VecX> levers;  ///< H_nᵀλ on each needle
     law::Multipliers lambda;
+    core::VecX mobility;  ///< W_ii, 0 on rows that nothing can move [m/N]
   };
 
   void move_needles(const State& old, State& next) const;

@@ -16,9 +16,10 @@ std::optional<Span> clip_line(const std::array<core::Vec3, 4>& corner, const cor
   const double edges = (Q - P).norm() / mesh::longest_edge(corner);
   Span span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int a = 0; a < 4; ++a) {
-    // Relative to the line's length in edges: how steeply it leaves the face's plane.
+    // Relative to the line's length in edges: how steeply it leaves the face's plane. Up to 1e-6
+    // of an edge outside counts as inside.
     if (std::abs(slope[a]) <= 1e-9 * edges) {
-      if (at_P[a] < -1e-9 * (1.0 + edges)) return std::nullopt;
+      if (at_P[a] < -1e-6) return std::nullopt;
       continue;
     }
     const double t = -at_P[a] / slope[a];

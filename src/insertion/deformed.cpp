@@ -7,7 +7,7 @@
 namespace trocar::insertion {
 namespace {
 
-constexpr double inside = -1e-9;  ///< barycentric slack of "in the tet"
+constexpr double inside = -1e-6;  ///< barycentric slack of "in the tet", as for the path
 
 }  // namespace
 

@@ -57,29 +57,25 @@ InsertionState Insertion::start(const needle::Needle& needle) const
 InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft& predicted,
                                   const Deformed& tissue) const
 {
-  InsertionState next = old;
-  const Vec3& tip = predicted.tip();
   CouplingPoint born;
   born.needle_arc = predicted.length;
   born.stuck = false;
-  if (next.path.empty()) {
-    const auto entry = tissue.entry(predicted.x.front(), tip);
-    const auto X = entry ? tissue.reference_place(tip, *entry) : std::nullopt;
-    if (!X || (*X - *entry).norm() <= 0.0) return next;
-    Path path;
-    grow(path, *entry, *mesh_, *locator_, settings_.placement);
-    grow(path, *X, *mesh_, *locator_, settings_.placement);
-    if (first_tet(path) < 0) return next;
-    next.path = std::move(path);
-    next.phase = Phase::inserted;
-    add_points_behind(next, next.path.length(), born);
-    return next;
+  if (old.path.empty()) return enter(old, predicted, tissue, born);
+
+  const Vec3& tip = predicted.tip();
+  const auto inside = tissue.reference_place(tip, old.path.vertex.back());
+  if (old.phase == Phase::withdrawn) {
+    if (!inside) return old;
+    // Beside the old channel the tip cuts a new one; the old one is then forgotten.
+    const double beside = distance(old.path, *inside);
+    if (beside > 0.3 * arc_tolerance(*mesh_, first_tet(old.path)) / relative_tolerance)
+      return enter(old, predicted, tissue, born);
   }
   // Beyond its tets the map of the nearest end is continued: the tip may be out at either side.
   const bool behind = old.tip_arc <= 0.5 * old.path.length();
   const int end_tet = behind ? first_tet(old.path) : last_tet(old.path);
-  const auto inside = tissue.reference_place(tip, old.path.vertex.back());
   const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
+  InsertionState next = old;
   double arc = arc_nearest(next.path, X);
   const double tolerance = arc_tolerance(*mesh_, end_tet);
   if (arc > next.path.length() + 1e-3 * tolerance) {
@@ -92,6 +88,22 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
   if (std::abs(arc - old.tip_arc) > tolerance) next.withdrawing = arc < old.tip_arc;
   drop_points_ahead(next, arc);
   add_points_behind(next, arc, born);
+  return next;
+}
+
+InsertionState Insertion::enter(const InsertionState& old, const needle::Shaft& predicted,
+                                const Deformed& tissue, const CouplingPoint& born) const
+{
+  const auto entry = tissue.entry(predicted.x.front(), predicted.tip());
+  const auto X = entry ? tissue.reference_place(predicted.tip(), *entry) : std::nullopt;
+  if (!X) return old;
+  InsertionState next;
+  next.path.first_id = old.path.first_id + static_cast<int>(old.path.sites.size());
+  grow(next.path, *entry, *mesh_, *locator_, settings_.placement);
+  grow(next.path, *X, *mesh_, *locator_, settings_.placement);
+  if (first_tet(next.path) < 0) return old;
+  next.phase = Phase::inserted;
+  add_points_behind(next, next.path.length(), born);
   return next;
 }
 
@@ -206,7 +218,7 @@ std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::
       }
       if (bound > 0.0) {
         row.kind = law::RowKind::box;
-        row.bound = bound;
+        row.bound = mine.bound = bound;
         mine.axial = add(on_shaft.tangent, slid, point.lambda[2]);
       }
     }
@@ -236,7 +248,10 @@ CouplingReport Insertion::accept(InsertionState& state, const std::vector<PointR
     const int axial = std::max(rows[k].axial, rows[k].viscous);  // both see the same slip
     if (axial < 0) continue;
     const double slip = multipliers.delta[axial];
-    point.stuck = std::abs(slip) <= settings_.stick_tolerance;
+    // Inside its box a point sticks, however loosely an unfinished iteration closed its gap.
+    const bool inside = rows[k].axial >= 0 && rows[k].bound > 0.0 &&
+                        std::abs(multipliers.lambda[rows[k].axial]) < rows[k].bound * (1.0 - 1e-9);
+    point.stuck = inside || std::abs(slip) <= settings_.stick_tolerance;
     if (!point.stuck) point.needle_arc += slip;
   }
   return report;

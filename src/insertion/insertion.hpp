@@ -59,9 +59,10 @@ struct InsertionSettings
 /// Which rows a coupling point got in a set, and where it was on the shaft.
 struct PointRows
 {
-  int first = 0;     ///< first of two lateral rows
-  int axial = -1;    ///< row of the box (or η) law, -1 when there is none
-  int viscous = -1;  ///< row of the dashpot, -1 when there is none
+  int first = 0;       ///< first of two lateral rows
+  int axial = -1;      ///< row of the box (or η) law, -1 when there is none
+  int viscous = -1;    ///< row of the dashpot, -1 when there is none
+  double bound = 0.0;  ///< F of the box row [N]
 };
 
 /// What one needle's coupling did in a step.
@@ -106,6 +107,8 @@ class Insertion
   core::MatX tributary_lengths(const InsertionState& state) const;
 
  private:
+  InsertionState enter(const InsertionState& old, const needle::Shaft& predicted,
+                       const Deformed& tissue, const CouplingPoint& born) const;
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;
   void drop_points_ahead(InsertionState& state, double arc) const;

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "insertion/clip.hpp"
 
 namespace trocar::insertion {
 namespace {
-
-constexpr double relative_tolerance = 1e-6;  ///< of the local edge, DESIGN section 4
 
 /// A tet the segment's line passes through, over [low, high] in units of the segment.
 struct Passage
@@ -96,8 +95,6 @@ void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec
   for (int a = 0; a < 4; ++a)
     if (weight[a] < relative_tolerance) weight[a] = 0.0;  // on a face: the opposite node is free
   site.anchor.weight = weight / weight.sum();
-  if (!path.sites.empty())
-    path.smallest_gap = std::min(path.smallest_gap, arc - path.sites.back().arc);
   path.sites.push_back(site);
 }
 
@@ -174,6 +171,17 @@ double arc_nearest(const Path& path, const Vec3& X)
     }
   }
   return arc;
+}
+
+double distance(const Path& path, const Vec3& X)
+{
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < path.vertex.size(); ++i) {
+    const Vec3 d = path.vertex[i + 1] - path.vertex[i];
+    const double t = std::clamp((X - path.vertex[i]).dot(d) / d.squaredNorm(), 0.0, 1.0);
+    nearest = std::min(nearest, (path.vertex[i] + t * d - X).norm());
+  }
+  return nearest;
 }
 
 }  // namespace trocar::insertion

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "constraint/set.hpp"
@@ -27,8 +26,8 @@ struct Piece
   int tet;            ///< -1: not in the tissue
 };
 
-/// A material place on the path where a coupling point may stand. Its index in `Path::sites` is
-/// its identity for the whole run.
+/// A material place on the path where a coupling point may stand. `first_id` of the path plus its
+/// index is its identity for the whole run.
 struct Site
 {
   double arc;  ///< [m] from the start of the path
@@ -45,7 +44,7 @@ struct Path
   std::vector<Piece> pieces;      ///< in order, covering 0 .. length()
   std::vector<double> crossings;  ///< arcs of all face crossings, before merging
   std::vector<Site> sites;        ///< by arc
-  double smallest_gap = std::numeric_limits<double>::infinity();  ///< between sites [m]
+  int first_id = 0;               ///< identity of sites[0]; a new channel goes on counting
 
   bool empty() const { return vertex.empty(); }
   double length() const { return arc.empty() ? 0.0 : arc.back(); }
@@ -64,6 +63,12 @@ double tissue_length(const Path& path, double arc);
 /// Arc length of the point of the path nearest to X; the first and last segments go on beyond
 /// their ends, so that the result may be negative or more than the length.
 double arc_nearest(const Path& path, const Vec3& X);
+
+/// Distance of X from the path itself [m].
+double distance(const Path& path, const Vec3& X);
+
+/// Part of the local edge below which two places are one.
+inline constexpr double relative_tolerance = 1e-6;
 
 /// Arc tolerance below which two places are one [m].
 double arc_tolerance(const mesh::Mesh& mesh, int tet);

@@ -61,17 +61,6 @@ Multipliers solve_condensed(const Problem& problem, const Settings& settings)
   return result;
 }
 
-/// Rows that nothing can move (W_ii = 0: all their dofs are prescribed) are taken out; their
-/// multiplier is 0 and their gap is what it is.
-std::vector<int> movable_rows(const Problem& problem)
-{
-  std::vector<int> rows;
-  const double smallest = 1e-14 * problem.W.diagonal().maxCoeff();
-  for (int i = 0; i < static_cast<int>(problem.rows()); ++i)
-    if (problem.W(i, i) > smallest) rows.push_back(i);
-  return rows;
-}
-
 Problem restrict(const Problem& problem, const std::vector<int>& rows)
 {
   Problem part;
@@ -90,9 +79,22 @@ Problem restrict(const Problem& problem, const std::vector<int>& rows)
 
 }  // namespace
 
+VecX mobility(const Problem& problem)
+{
+  VecX w = problem.W.diagonal();
+  if (w.size() == 0) return w;
+  const double smallest = 1e-14 * w.maxCoeff();
+  for (double& value : w)
+    if (value <= smallest) value = 0.0;
+  return w;
+}
+
 Multipliers solve(const Problem& problem, const Settings& settings)
 {
-  const std::vector<int> rows = movable_rows(problem);
+  const VecX w = mobility(problem);
+  std::vector<int> rows;  // those that something can move
+  for (int i = 0; i < static_cast<int>(w.size()); ++i)
+    if (w[i] > 0.0) rows.push_back(i);
   Multipliers result;
   if (rows.empty()) {
     result.converged = true;

@@ -34,6 +34,7 @@ Locator::Locator(const Mesh& mesh) : mesh_(&mesh)
     const Vec3 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]).cwiseMin(p[3]);
     const Vec3 high = p[0].cwiseMax(p[1]).cwiseMax(p[2]).cwiseMax(p[3]);
     entries.emplace_back(Box(point(low), point(high)), t);
+    longest_edge_ = std::max(longest_edge_, (high - low).norm());
   }
   tree_ = std::make_unique<Tree>(
       Tree{bg::index::rtree<Entry, bg::index::quadratic<16>>(entries.begin(), entries.end())});
@@ -55,8 +56,7 @@ std::vector<int> Locator::in_box(const Vec3& low, const Vec3& high) const
 
 int Locator::tet_at(const Vec3& p, double tolerance) const
 {
-  const double margin = 1e-9 * (1.0 + p.cwiseAbs().maxCoeff());
-  const Vec3 reach = Vec3::Constant(margin);
+  const Vec3 reach = Vec3::Constant(tolerance * longest_edge_);
   for (int tet : in_box(p - reach, p + reach))
     if (barycentric(corners(*mesh_, tet), p).minCoeff() >= -tolerance) return tet;
   return -1;

@@ -26,6 +26,7 @@ class Locator
   struct Tree;
   const Mesh* mesh_;
   std::unique_ptr<Tree> tree_;
+  double longest_edge_ = 0.0;  ///< bound of it: the largest box diagonal [m]
 };
 
 }  // namespace trocar::mesh

@@ -36,7 +36,8 @@ struct EndPose
 
 /// Forces the element puts up and a symmetric positive semidefinite tangent of them in world axes
 /// (corotational). Of the derivative of the element frame only the string stiffness of a tension
-/// is kept: the rest is not symmetric or not positive, and costs iterations, not accuracy.
+/// is kept: the rest is not symmetric or not positive, and costs iterations where the step is
+/// iterated.
 struct BeamForce
 {
   Vec12 force;

@@ -5,6 +5,13 @@
 
 namespace trocar::needle {
 
+bool NeedleState::finite() const
+{
+  for (std::size_t i = 0; i < shaft.x.size(); ++i)
+    if (!shaft.x[i].allFinite() || !shaft.R[i].allFinite()) return false;
+  return true;
+}
+
 Needle::Needle(NeedleSettings settings)
     : settings_(std::move(settings)),
       element_stiffness_(

@@ -32,6 +32,8 @@ struct NeedleState
   Shaft shaft;
   std::vector<Vec3> v;  ///< nodal velocity [m/s]
   std::vector<Vec3> w;  ///< nodal angular velocity [rad/s]
+
+  bool finite() const;
 };
 
 /// A needle linearised about a shape: A d = r - H_nᵀλ + holder, on 6 dofs per node (δx, δθ).

@@ -121,6 +121,13 @@ void LinearSystem::raise_mumps_workspace(PC pc)
   MatSolverType package = nullptr;
   TROCAR_PETSC(PCFactorGetMatSolverType(pc, &package));
   if (!is(package, MATSOLVERMUMPS)) return;
+  // The factor must know our prefix before it exists, or MUMPS reads its options without it.
+  Mat matrix = needs_aij_ ? converted_.get() : assembled_.get();
+  TROCAR_PETSC(MatSetOptionsPrefixFactor(matrix, settings_.prefix.c_str()));
+  PetscBool given = PETSC_FALSE;
+  TROCAR_PETSC(
+      PetscOptionsHasName(nullptr, settings_.prefix.c_str(), "-mat_mumps_icntl_14", &given));
+  if (given) return;
   TROCAR_PETSC(PCFactorSetUpMatSolverType(pc));
   Mat factor = nullptr;
   TROCAR_PETSC(PCFactorGetMatrix(pc, &factor));
@@ -195,6 +202,10 @@ OwnedField LinearSystem::solve(const OwnedField& b)
 core::MatX LinearSystem::solve_block(const core::MatX& rhs)
 {
   core::MatX x = core::MatX::Zero(rhs.rows(), rhs.cols());
+  if (!direct()) {  // KSPMatSolve would tell of the last column only whether it converged
+    for (Eigen::Index k = 0; k < rhs.cols(); ++k) x.col(k) = solve({rhs.col(k)}).value;
+    return x;
+  }
   const base::MatHandle B = wrap(*space_, rhs);
   const base::MatHandle X = wrap(*space_, x);
   for (const base::MatHandle* mat : {&B, &X}) {

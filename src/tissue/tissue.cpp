@@ -234,18 +234,6 @@ OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const T
   return r;
 }
 
-Vec3 Tissue::support_force(const TissueState& old, const OwnedField& u, const TimeStep& step) const
-{
-  std::vector<Mat3> R;
-  rotations(space_->with_ghosts(u), R);
-  const fem::GlobalField r = space_->gather(forces(old, u, R, step, nullptr));
-  Vec3 sum = Vec3::Zero();
-  for (int node = 0; node < space_->global(); ++node)
-    for (int a = 0; a < 3; ++a)
-      if (fixed_.fixed(node, a)) sum[a] -= r.node(node)[a];
-  return sum;
-}
-
 std::string Tissue::describe_solver() const
 {
   return current_->system->describe();

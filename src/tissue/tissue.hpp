@@ -82,10 +82,6 @@ class Tissue
   /// Builds and factors the operator of a step from rest, so that `-check` can stop. Collective.
   void prepare(const TimeStep& step);
 
-  /// Sum over free nodes of external, internal and inertial nodal forces of a step [N]: what the
-  /// needle must have put in, minus what the supports took. Reported, hence in global order.
-  Vec3 support_force(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
-
  private:
   struct Element
   {

@@ -69,6 +69,17 @@ refuses("CSV that begins elsewhere", 65, ["begins"],
         {"-needle_trajectory": written("off.csv", "time,x,y,z\n0,-0.07,0.02,0.02\n")})
 refuses("CSV base in the tissue", 65, ["base would enter"],
         {"-needle_trajectory": written("in.csv", "time,x,y,z\n" + start + "1,0.01,0.02,0.02\n")})
+refuses("CSV base through the tissue", 65, ["base would enter"],
+        {"-needle_trajectory": written("through.csv", "time,x,y,z\n" + start + "1,0.2,0.02,0.02\n")})
+refuses("CSV that never comes near", 65, ["never meets"],
+        {"-needle_trajectory": written("far.csv", "time,x,y,z\n0,4.92,5,5\n1,4.95,5,5\n"),
+         "-needle_entry": "5,5,5"})
+refuses("entry inside with a CSV", 65, ["start inside"],
+        {"-needle_trajectory": written("deep.csv", "time,x,y,z\n0,-0.05,0.02,0.02\n"),
+         "-needle_entry": "0.03,0.02,0.02"})
+refuses("dashpots without time", 64, ["-insertion_friction_viscous"],
+        {"-analysis": "static", "-time_end": "0", "-insertion_friction_viscous": "1"})
+refuses("negative withdrawal friction", 64, ["_withdraw"], {"-insertion_friction_static_withdraw": "-0.5"})
 refuses("CSV with time running back", 65, ["time does not increase"],
         {"-needle_trajectory": written("back.csv", "time,x,y,z\n" + start + start)})
 refuses("curve without a load", 64, ["-boundary_z1_curve"], {"-boundary_z1_curve": "no.csv"})
@@ -86,6 +97,10 @@ refuses("constraint solver out of sweeps", 70, ["pgs did not converge"],
 refuses("step too long to take", 70, ["inside out"],
         {"-tissue_model": "corotational", "-gravity": "0,0,-9e9", "-time_step": "10", "-time_end": "10"})
 
+os.environ["PETSC_OPTIONS"] = "-options_file options/none.opts"
+process = run(small)
+del os.environ["PETSC_OPTIONS"]
+check(process.returncode == 64 and len(error_lines(process)) == 1, "missing file in PETSC_OPTIONS")
 process = run({"-options_file": "options/none.opts"})
 check(process.returncode == 64 and len(error_lines(process)) == 1 and "none.opts" in process.stderr,
       f"missing options file: {process.returncode} {error_lines(process)}")

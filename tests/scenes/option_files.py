@@ -3,7 +3,9 @@ import glob
 import os
 import subprocess
 
-from harness import PROGRAM, ROOT, check, finish, run
+import h5py
+
+from harness import FOLDER, PROGRAM, ROOT, check, finish, run, small_block
 
 for path in sorted(glob.glob(os.path.join(ROOT, "options", "*.opts"))):
     name = os.path.basename(path)
@@ -15,6 +17,18 @@ for path in sorted(glob.glob(os.path.join(ROOT, "options", "*.opts"))):
     check(process.returncode == 0, f"{name}: -check {process.stderr[-300:]}")
     with open(os.path.join(ROOT, "README.md")) as stream:
         check(name in stream.read(), f"{name}: the README's table names it")
+
+# The command line wins wherever it stands, and MUMPS hears its options.
+folder = os.path.join(FOLDER, "first")
+before = run({"-time_end": "0.04", "-mesh": small_block(), "-output_dir": folder,
+              "-tissue_mat_mumps_icntl_14": "80",
+              "-options_file": os.path.join(ROOT, "options", "small_insertion.opts")})
+check(before.returncode == 0, f"arguments before -options_file {before.stderr[-300:]}")
+with h5py.File(folder + "/run.h5") as results:
+    check(len(results["history/time"]) == 3, "the command line's time_end was used")
+    names = list(results["provenance/options/name"][:])
+    source = results["provenance/options/source"][names.index(b"time_end")]
+    check(source == b"command line", "and recorded with its source")
 
 help_text = subprocess.run([PROGRAM, "-help"], capture_output=True, text=True)
 check(help_text.returncode == 0 and "-needle_velocity" in help_text.stdout, "-help lists options")
