@@ -2,7 +2,7 @@
 // Physical groups: volume "gel"; surfaces "bottom", "top", "entry" (x = 0), "exit", "front", "back".
 SetFactory("OpenCASCADE");
 Box(1) = {0, 0, 0, 0.15, 0.05, 0.05};
-h = 0.0092;
+DefineConstant[h = 0.0092];  // edge length [m]; gmsh -setnumber h 0.005 for a finer block
 Mesh.CharacteristicLengthMin = h;
 Mesh.CharacteristicLengthMax = h;
 Mesh.Algorithm3D = 1;

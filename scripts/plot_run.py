@@ -82,7 +82,7 @@ def draw_cut(ax, run, step_file, start_file, needles):
     with h5py.File(step_file) as step, h5py.File(start_file) as start:
         u = step["displacement"][:]
         moved = np.linalg.norm(u - start["displacement"][:], axis=1)
-        if not needles:
+        if not needles or step_file == start_file:
             moved = np.linalg.norm(u, axis=1)
         time = step["time"][0]
         shafts = [step[f"needle/{name}/axis"][:] for name in needles]
@@ -121,7 +121,7 @@ def plot_cut(run, folder):
     figure, ax = plt.subplots(figsize=(10, 4.2), constrained_layout=True)
     body = draw_cut(ax, run, chosen, with_field[0], needles)
     figure.colorbar(body, ax=ax, shrink=0.8).set_label(
-        "displacement since the start [mm]" if needles and len(with_field) > 1 else "displacement [mm]"
+        "displacement since the start [mm]" if needles and chosen != with_field[0] else "displacement [mm]"
     )
     figure.savefig(folder / "cut.png", dpi=130)
     plt.close(figure)

@@ -123,10 +123,15 @@ void Insertion::drop_points_ahead(InsertionState& state, double arc) const
 void Insertion::add_points_behind(InsertionState& state, double arc,
                                   const CouplingPoint& born) const
 {
+  const double old_arc = std::max(state.tip_arc, 0.0);
   state.tip_arc = arc;
   while (state.points.size() < state.path.sites.size() && passed(state, state.points.size(), arc)) {
     CouplingPoint point = born;
     point.site = static_cast<int>(state.points.size());
+    // The tip passed it within the step; it counts as having slipped the whole step, so that its
+    // friction is there at once and the force has no dent where points are born.
+    const double site_arc = state.path.sites[state.points.size()].arc;
+    point.needle_arc += std::max(site_arc - old_arc, 0.0);
     state.points.push_back(point);
   }
 }

@@ -15,7 +15,7 @@ namespace trocar::insertion {
 enum class Phase { outside, inserted, withdrawn };
 
 /// State of one coupling point: a material place of the tissue held by the shaft. A point is born
-/// when the tip passes it: it starts at the tip of the needle, slipping.
+/// when the tip passes it, slipping, as if it had slipped for the whole step.
 struct CouplingPoint
 {
   int site = 0;                ///< index in Path::sites, its identity

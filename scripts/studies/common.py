@@ -1,0 +1,29 @@
+"""What studies share: running the program, reading results, writing tables."""
+import csv
+import subprocess
+from pathlib import Path
+
+import h5py
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def run(options_file, folder, changes, ranks=1):
+    """One run of an option file with changes; gives the open run.h5. Stops on failure."""
+    words = []
+    for name, value in changes.items():
+        words += [f"-{name}", str(value)]
+    subprocess.run(
+        ["mpirun", "-n", str(ranks), "build/trocar", "-options_file", f"options/{options_file}",
+         "-output_dir", str(folder), "-quiet", *words], cwd=ROOT, check=True)
+    return h5py.File(folder / "run.h5")
+
+
+def write_table(path, rows):
+    """CSV with a header line; rows are dicts with the same keys."""
+    with open(path, "w", newline="") as stream:
+        writer = csv.DictWriter(stream, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
+    for row in [rows[0].keys()] + [r.values() for r in rows]:
+        print("  ".join(f"{str(cell):>16.16}" for cell in row))
