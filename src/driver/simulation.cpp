@@ -71,8 +71,6 @@ StepResult Simulation::equilibrium(const State& old, const core::TimeStep& now)
   return result;
 }
 
-// One step of both papers: every body moves freely, the rows that couple them are solved in one
-// small dense problem, and the bodies are corrected by it.
 StepResult Simulation::step(const State& old, const core::TimeStep& now)
 {
   State next = old;
@@ -80,42 +78,49 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
   move_needles(old, next);  // 1 events, decided before and frozen during the solve
   StepReport report;
   const int most = now.is_static ? most_linearisations : scenario_.time.newton_max;
-  double last_residual = std::numeric_limits<double>::infinity();
-  for (int iteration = 1;; ++iteration) {
+  double residual = std::numeric_limits<double>::infinity();
+  for (int iteration = 1; iteration <= most; ++iteration) {
     const State iterate = next;
-    const tissue::FreeMotion tissue =
-        tissue_.free_motion(old.tissue, next.tissue.u, now);  // 2 each body alone
-    if (tissue.trouble) return StepResult::rejected(*tissue.trouble);
-    std::vector<needle::Linearised> needles;
-    for (std::size_t i = 0; i < needles_.size(); ++i)
-      needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
-
-    const Rows rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
-    Correction correction;
-    if (!rows.set.empty()) {  // 4 W and g, then the laws
-      const auto trouble = solve_constraints(rows, tissue.increment, needles, correction, report);
-      if (trouble) return StepResult::rejected(*trouble);
-    }
-    correct(old, now, tissue.increment, needles, correction, next, report);  // 5
-    if (!tissue_.possible(next.tissue.u))
-      return StepResult::rejected("an element of the tissue would turn inside out");
-    for (const needle::NeedleState& needle : next.needles)
-      if (!needle.finite()) return StepResult::rejected("a needle's shape is not finite");
+    const double last_residual = residual;
+    const Pass pass = linearised_step(old, now, next, report);  // 2 to 5
+    if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
-    double residual = 0.0;
-    const bool done = most == 1 || balanced(old, next, now, correction, residual);
-    if (done) {
-      accept(rows, correction, next, report);
+    if (most == 1 || balanced(old, next, now, pass, residual)) {
+      accept(pass, next, report);
       return {std::move(next), std::move(report), {}};
     }
-    if (iteration == most || !std::isfinite(residual))
-      return StepResult::rejected("equilibrium not reached in " + std::to_string(iteration) +
-                                  " linearisations (relative residual " + core::shown(residual) +
-                                  ")");
-    if (rows.set.empty() && residual > last_residual)  // overshoot: half the increment
+    if (pass.rows.set.empty() && residual > last_residual)  // overshoot: half the increment
       next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.tissue.u.value);
-    last_residual = residual;
   }
+  return StepResult::rejected("equilibrium not reached in " + std::to_string(most) +
+                              " linearisations (relative residual " + core::shown(residual) + ")");
+}
+
+// The step of both papers: every body moves freely, the rows that couple them are solved in one
+// small dense problem, and the bodies are corrected by it.
+Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeStep& now,
+                                             State& next, StepReport& report)
+{
+  Pass pass;
+  const tissue::FreeMotion tissue =
+      tissue_.free_motion(old.tissue, next.tissue.u, now);  // 2 each body alone
+  pass.trouble = tissue.trouble;
+  if (pass.trouble) return pass;
+  std::vector<needle::Linearised> needles;
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
+
+  pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
+  if (!pass.rows.set.empty())            // 4 W and g from the isolated compliance, then the laws
+    pass.trouble = solve_constraints(tissue.increment, needles, pass, report);
+  if (pass.trouble) return pass;
+
+  correct(old, now, tissue.increment, needles, pass, next, report);  // 5
+  if (!tissue_.possible(next.tissue.u))
+    pass.trouble = "an element of the tissue would turn inside out";
+  for (const needle::NeedleState& needle : next.needles)
+    if (!needle.finite()) pass.trouble = "a needle's shape is not finite";
+  return pass;
 }
 
 void Simulation::move_needles(const State& old, State& next) const
@@ -146,28 +151,29 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, State& nex
 }
 
 std::optional<std::string> Simulation::solve_constraints(
-    const Rows& rows, const fem::OwnedField& free_increment,
-    const std::vector<needle::Linearised>& needles, Correction& correction, StepReport& report)
+    const fem::OwnedField& free_increment, const std::vector<needle::Linearised>& needles,
+    Pass& pass, StepReport& report)
 {
+  const constraint::Set& set = pass.rows.set;
   std::vector<constraint::SmallBody> bodies;
   for (const needle::Linearised& needle : needles)
     bodies.push_back({needle.held, needle.factor, needle.free_increment});
   const constraint::Reduced reduced =
-      constraint::reduce(rows.set, space_, free_increment, tissue_.compliance(), bodies);
-  correction.lambda = law::solve(reduced.problem, scenario_.laws);
+      constraint::reduce(set, space_, free_increment, tissue_.compliance(), bodies);
+  pass.lambda = law::solve(reduced.problem, scenario_.laws);
   ++ledger_.constraint_solves;
-  if (!correction.lambda.converged) return correction.lambda.why;
+  if (!pass.lambda.converged) return pass.lambda.why;
 
-  correction.mobility = law::mobility(reduced.problem);
-  correction.push = constraint::tissue_forces(rows.set, correction.lambda.lambda, space_);
+  pass.mobility = law::mobility(reduced.problem);
+  pass.push = constraint::tissue_forces(set, pass.lambda.lambda, space_);
   for (std::size_t i = 0; i < needles_.size(); ++i)
-    correction.levers.push_back(constraint::body_forces(rows.set, correction.lambda.lambda,
-                                                        static_cast<int>(i), needles_[i].dofs()));
-  report.rows = rows.set.size();
-  report.rank = correction.lambda.rank;
-  report.nonunique = correction.lambda.nonunique;
-  report.iterations += correction.lambda.iterations;
-  report.residual = std::max(report.residual, correction.lambda.residual);
+    pass.levers.push_back(
+        constraint::body_forces(set, pass.lambda.lambda, static_cast<int>(i), needles_[i].dofs()));
+  report.rows = set.size();
+  report.rank = pass.lambda.rank;
+  report.nonunique = pass.lambda.nonunique;
+  report.iterations += pass.lambda.iterations;
+  report.residual = std::max(report.residual, pass.lambda.residual);
   report.compliance.probes = reduced.compliance.probes;
   report.compliance.built += reduced.compliance.built;
   report.compliance.reused += reduced.compliance.reused;
@@ -177,30 +183,29 @@ std::optional<std::string> Simulation::solve_constraints(
 
 void Simulation::correct(const State& old, const core::TimeStep& now,
                          const fem::OwnedField& free_increment,
-                         const std::vector<needle::Linearised>& needles,
-                         const Correction& correction, State& next, StepReport& report)
+                         const std::vector<needle::Linearised>& needles, const Pass& pass,
+                         State& next, StepReport& report)
 {
-  const bool pushed = correction.lambda.lambda.size() > 0;
+  const bool pushed = pass.lambda.lambda.size() > 0;
   next.tissue.u.value += free_increment.value;
-  if (pushed) next.tissue.u.value += tissue_.respond(correction.push).value;
+  if (pushed) next.tissue.u.value += tissue_.respond(pass.push).value;
   next.tissue.v.value = now.inverse() * (next.tissue.u.value - old.tissue.u.value);
   report.needles.assign(needles_.size(), {});
   for (std::size_t i = 0; i < needles_.size(); ++i) {
-    const core::VecX lever =
-        pushed ? correction.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();
+    const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();
     report.needles[i].base = needles_[i].base_wrench(next.needles[i], needles[i], lever);
     next.needles[i] = needles_[i].correct(old.needles[i], next.needles[i], needles[i], lever, now);
   }
 }
 
 bool Simulation::balanced(const State& old, const State& next, const core::TimeStep& now,
-                          const Correction& correction, double& residual) const
+                          const Pass& pass, double& residual) const
 {
   double scale = 0.0;
   fem::OwnedField r = tissue_.residual(old.tissue, next.tissue.u, now, scale);
-  const bool pushed = correction.lambda.lambda.size() > 0;
+  const bool pushed = pass.lambda.lambda.size() > 0;
   if (pushed) {
-    fem::OwnedField push = correction.push;
+    fem::OwnedField push = pass.push;
     tissue_.fixed().clear(push);
     r.value += push.value;
     scale += space_.norm(push);
@@ -210,8 +215,7 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
     // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
     // are below round-off.
     const needle::Linearised again = needles_[i].linearise(old.needles[i], next.needles[i], now);
-    const core::VecX lever =
-        pushed ? correction.levers[i] : core::VecX::Zero(again.r.size()).eval();
+    const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(again.r.size()).eval();
     residual = std::max(residual, needles_[i].relative_increment(again, lever));
   }
   if (!(residual <= balance_tolerance)) return false;
@@ -221,20 +225,18 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
   for (int i = 0; i < again.set.size(); ++i) {
     const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
     const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
-                      row.relative_softness == 0.0 && correction.mobility[i] > 0.0;
+                      row.relative_softness == 0.0 && pass.mobility[i] > 0.0;
     if (hard && std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, 1e-9)) return false;
   }
   return true;
 }
 
-void Simulation::accept(const Rows& rows, const Correction& correction, State& next,
-                        StepReport& report) const
+void Simulation::accept(const Pass& pass, State& next, StepReport& report) const
 {
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     NeedleReport& needle = report.needles[i];
-    if (!rows.set.empty())
-      needle.coupling =
-          insertion_->accept(next.insertions[i], rows.of_needle[i], correction.lambda);
+    if (!pass.rows.set.empty())
+      needle.coupling = insertion_->accept(next.insertions[i], pass.rows.of_needle[i], pass.lambda);
     needle.tip = next.needles[i].shaft.tip();
     needle.depth = insertion_->depth(next.insertions[i]);
   }

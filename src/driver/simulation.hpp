@@ -93,27 +93,30 @@ class Simulation
     constraint::Set set;
     std::vector<std::vector<insertion::PointRows>> of_needle;
   };
-  struct Correction
+  /// One linearisation: its rows and what they answered.
+  struct Pass
   {
+    Rows rows;
+    std::optional<std::string> trouble;  ///< why the step cannot be taken; agreed by all ranks
+    law::Multipliers lambda;
+    core::VecX mobility;             ///< W_ii, 0 on rows that nothing can move [m/N]
     fem::OwnedField push;            ///< Hᵀλ on the tissue [N]
     std::vector<core::VecX> levers;  ///< H_nᵀλ on each needle
-    law::Multipliers lambda;
-    core::VecX mobility;  ///< W_ii, 0 on rows that nothing can move [m/N]
   };
 
+  Pass linearised_step(const State& old, const core::TimeStep& now, State& next,
+                       StepReport& report);
   void move_needles(const State& old, State& next) const;
   Rows coupling_rows(const core::TimeStep& now, State& next) const;
-  std::optional<std::string> solve_constraints(const Rows& rows,
-                                               const fem::OwnedField& free_increment,
+  std::optional<std::string> solve_constraints(const fem::OwnedField& free_increment,
                                                const std::vector<needle::Linearised>& needles,
-                                               Correction& correction, StepReport& report);
+                                               Pass& pass, StepReport& report);
   void correct(const State& old, const core::TimeStep& now, const fem::OwnedField& free_increment,
-               const std::vector<needle::Linearised>& needles, const Correction& correction,
-               State& next, StepReport& report);
-  bool balanced(const State& old, const State& next, const core::TimeStep& now,
-                const Correction& correction, double& residual) const;
-  void accept(const Rows& rows, const Correction& correction, State& next,
-              StepReport& report) const;
+               const std::vector<needle::Linearised>& needles, const Pass& pass, State& next,
+               StepReport& report);
+  bool balanced(const State& old, const State& next, const core::TimeStep& now, const Pass& pass,
+                double& residual) const;
+  void accept(const Pass& pass, State& next, StepReport& report) const;
 
   const Scenario& scenario_;
   core::Ledger ledger_;

@@ -183,6 +183,31 @@ Friction Insertion::friction_of(const InsertionState& state, const core::MatX& t
   return sum;
 }
 
+void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
+                               constraint::Row row, PointRows& mine, constraint::Set& set) const
+{
+  const auto add = [&] {
+    set.add(row);
+    return set.size() - 1;
+  };
+  if (settings_.eta > 0.0) {
+    row.relative_softness = (1.0 - settings_.eta) / settings_.eta;
+    mine.axial = add();
+    return;
+  }
+  if (h > 0.0 && friction.viscous > 0.0) {
+    row.softness = h / friction.viscous;
+    mine.viscous = add();
+    row.softness = 0.0;
+  }
+  mine.bound = point.stuck ? friction.static_limit : friction.dynamic_limit;
+  if (mine.bound > 0.0) {
+    row.kind = law::RowKind::box;
+    row.bound = mine.bound;
+    mine.axial = add();
+  }
+}
+
 std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::Shaft& shaft,
                                            const Deformed& tissue, int body, double h,
                                            constraint::Set& set) const
@@ -191,44 +216,29 @@ std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::
   const core::MatX tributary = tributary_lengths(state);
   for (std::size_t k = 0; k < state.points.size(); ++k) {
     CouplingPoint& point = state.points[k];
+    PointRows mine;
+    mine.first = set.size();
     constraint::Row row;
     row.anchor = state.path.sites[static_cast<std::size_t>(point.site)].anchor;
-    const Vec3 p = tissue.position(row.anchor);
-    const needle::ShaftPoint on_shaft = needle::project(shaft, p);
-    PointRows mine{set.size(), -1, -1};
     row.body = body;
     row.point = mine.first;
-    const auto add = [&](const Vec3& direction, double gap, double start) {
+    const Vec3 p = tissue.position(row.anchor);
+    const needle::ShaftPoint on_shaft = needle::project(shaft, p);
+    const auto aim = [&](const Vec3& direction, double start) {
       row.direction = direction;
-      row.gap = gap;
+      row.gap = direction.dot(p - on_shaft.x);
       row.lever = needle::lever(shaft, on_shaft.s, direction);
       row.start = start;
-      set.add(row);
-      return set.size() - 1;
     };
-    add(on_shaft.normal_1, on_shaft.normal_1.dot(p - on_shaft.x), point.lambda[0]);
-    add(on_shaft.normal_2, on_shaft.normal_2.dot(p - on_shaft.x), point.lambda[1]);
-
-    const Friction friction = friction_of(state, tributary, k);
-    const double slid = on_shaft.s - point.needle_arc;
-    const double bound = point.stuck ? friction.static_limit : friction.dynamic_limit;
-    if (settings_.eta > 0.0) {
-      row.relative_softness = (1.0 - settings_.eta) / settings_.eta;
-      mine.axial = add(on_shaft.tangent, slid, point.lambda[2]);
-    } else {
-      if (h > 0.0 && friction.viscous > 0.0) {
-        row.softness = h / friction.viscous;
-        mine.viscous = add(on_shaft.tangent, slid, 0.0);
-        row.softness = 0.0;
-      }
-      if (bound > 0.0) {
-        row.kind = law::RowKind::box;
-        row.bound = mine.bound = bound;
-        mine.axial = add(on_shaft.tangent, slid, point.lambda[2]);
-      }
-    }
+    aim(on_shaft.normal_1, point.lambda[0]);
+    set.add(row);
+    aim(on_shaft.normal_2, point.lambda[1]);
+    set.add(row);
+    aim(on_shaft.tangent, point.lambda[2]);
+    row.gap = on_shaft.s - point.needle_arc;
+    add_axial_rows(point, friction_of(state, tributary, k), h, row, mine, set);
     if (mine.axial < 0 && mine.viscous < 0) {  // nothing holds it: it follows the shaft
-      point.stuck = std::abs(slid) <= settings_.stick_tolerance;
+      point.stuck = std::abs(row.gap) <= settings_.stick_tolerance;
       point.needle_arc = on_shaft.s;
     }
     rows.push_back(mine);

@@ -111,6 +111,8 @@ class Insertion
                        const Deformed& tissue, const CouplingPoint& born) const;
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;
+  void add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
+                      constraint::Row row, PointRows& mine, constraint::Set& set) const;
   void drop_points_ahead(InsertionState& state, double arc) const;
   void add_points_behind(InsertionState& state, double arc, const CouplingPoint& born) const;
   bool passed(const InsertionState& state, std::size_t site, double arc) const;

@@ -269,6 +269,28 @@ TEST(Reinsertion, GoesBackInThroughTheOpenChannel)
   EXPECT_LE(again.path.sites.size(), first.path.sites.size() + 1);
 }
 
+TEST(Reinsertion, TenCyclesDoNotDrift)
+{
+  driver::Scenario scenario = test::needle_scenario(distorted);
+  std::string rows = "time,x,y,z\n0,-0.08,0.0173,0.0231\n";
+  for (int cycle = 0; cycle < 10; ++cycle) {
+    rows += std::to_string(2 * cycle + 1) + ",-0.05,0.0173,0.0231\n";
+    rows += std::to_string(2 * cycle + 2) + ",-0.085,0.0173,0.0231\n";
+  }
+  scenario.needles[0].motion.trajectory = core::parse_csv(rows, "cycles.csv");
+  scenario.insertion.friction = test::same({3.0, 2.0, 0.0});
+  scenario.time.end = 20.0;
+  const test::Run run = test::run(scenario);
+  const auto& second = run.reports[150].needles[0];
+  const auto& last = run.reports[950].needles[0];
+  EXPECT_GT(second.base.force.norm(), 0.05);
+  EXPECT_LT((last.base.force - second.base.force).norm(), 1e-6 * second.base.force.norm());
+  EXPECT_NEAR(last.depth, second.depth, 1e-9);
+  EXPECT_EQ(run.states[950].insertions[0].path.sites.size(),
+            run.states[150].insertions[0].path.sites.size());
+  EXPECT_TRUE(run.states.back().insertions[0].points.empty());
+}
+
 // Somewhere else it cuts a channel of its own, with identities of its own.
 TEST(Reinsertion, CutsANewChannelBesideTheOldOne)
 {
