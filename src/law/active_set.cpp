@@ -98,7 +98,7 @@ BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& 
   for (int i = 0; i < static_cast<int>(s.size()); ++i)
     walk.free[static_cast<std::size_t>(i)] = std::abs(start[i]) < F[i];
   const double tolerance = 1e-13 * (s.cwiseAbs().maxCoeff() + (S * F).cwiseAbs().maxCoeff());
-  double best = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::max();  // infinity minus infinity would be a NaN
   for (int k = 0; k < max_iterations; ++k) {
     std::vector<int> free;
     for (int i = 0; i < static_cast<int>(s.size()); ++i)

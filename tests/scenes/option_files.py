@@ -30,6 +30,13 @@ with h5py.File(folder + "/run.h5") as results:
     source = results["provenance/options/source"][names.index(b"time_end")]
     check(source == b"command line", "and recorded with its source")
 
+# No floating point exception anywhere, not even one that is survived.
+for solver in ("auto", "pgs", "hybrid", "active_set", "interior_point"):
+    trapped = run({"-options_file": os.path.join(ROOT, "options", "small_insertion.opts"),
+                   "-mesh": small_block(), "-constraint_solver": solver, "-fp_trap": "",
+                   "-quiet": "", "-output_dir": folder})
+    check(trapped.returncode == 0, f"-fp_trap with {solver}")
+
 help_text = subprocess.run([PROGRAM, "-help"], capture_output=True, text=True)
 check(help_text.returncode == 0 and "-needle_velocity" in help_text.stdout, "-help lists options")
 table = subprocess.run([PROGRAM, "-help_markdown"], capture_output=True, text=True).stdout
