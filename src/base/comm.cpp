@@ -123,14 +123,4 @@ void on_root(const Comm& comm, const std::function<void()>& work)
   if (caught.code != 0) throw core::Failure(static_cast<core::ExitCode>(caught.code), caught.line);
 }
 
-void agreed(const Comm& comm, const std::function<void()>& work)
-{
-  Caught caught = run_guarded(work);
-  int first = caught.code != 0 ? comm.rank() : comm.size();
-  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm.get()));
-  if (first == comm.size()) return;
-  broadcast_from(comm, first, caught);
-  throw core::Failure(static_cast<core::ExitCode>(caught.code), caught.line);
-}
-
 }  // namespace trocar::base

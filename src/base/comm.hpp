@@ -46,8 +46,4 @@ class Comm
 /// Collective.
 void on_root(const Comm& comm, const std::function<void()>& work);
 
-/// Runs `work` on every rank; if it fails anywhere, every rank throws the lowest failing rank's
-/// Failure. `work` itself must not be collective. Collective.
-void agreed(const Comm& comm, const std::function<void()>& work);
-
 }  // namespace trocar::base

@@ -76,14 +76,6 @@ double longest_edge(const std::array<Vec3, 4>& corner)
   return longest;
 }
 
-int volume_index(const Mesh& mesh, const std::string& name)
-{
-  const auto found = std::find(mesh.volumes.begin(), mesh.volumes.end(), name);
-  if (found != mesh.volumes.end()) return static_cast<int>(found - mesh.volumes.begin());
-  throw core::data_error(mesh.file + ": no physical volume '" + name + "'" +
-                         core::did_you_mean(name, mesh.volumes));
-}
-
 const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name)
 {
   for (const SurfaceGroup& group : mesh.surfaces)

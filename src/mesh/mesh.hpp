@@ -58,9 +58,6 @@ std::array<Vec3, 4> corners(const Mesh& mesh, int tet);
 /// Longest edge [m].
 double longest_edge(const std::array<Vec3, 4>& corner);
 
-/// Index of a volume by name, or a Failure (65) naming the nearest one.
-int volume_index(const Mesh& mesh, const std::string& name);
-
 /// Nodes of a physical surface or point group, sorted; Failure (65) when there is none.
 std::vector<int> group_nodes(const Mesh& mesh, const std::string& name);
 

@@ -199,8 +199,7 @@ TEST(Groups, UnknownNamesAreRefusedWithTheNearest)
 {
   const mesh::Mesh mesh = test::block({});
   for (const auto& look : {std::function([&] { mesh::surface_group(mesh, "x9"); }),
-                           std::function([&] { mesh::group_nodes(mesh, "zz"); }),
-                           std::function([&] { mesh::volume_index(mesh, "baem"); })}) {
+                           std::function([&] { mesh::group_nodes(mesh, "zz"); })}) {
     try {
       look();
       ADD_FAILURE();
