@@ -135,18 +135,18 @@ void Simulation::move_needles(const State& old, State& next) const
   }
 }
 
-Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, State& next) const
+Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const State& state) const
 {
   Rows rows;
-  const bool coupled = std::any_of(next.insertions.begin(), next.insertions.end(),
+  const bool coupled = std::any_of(state.insertions.begin(), state.insertions.end(),
                                    [](const auto& one) { return !one.points.empty(); });
   if (!coupled) return rows;
-  const fem::GlobalField u = space_.gather(next.tissue.u);
+  const fem::GlobalField u = space_.gather(state.tissue.u);
   const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
   const double passing = now.t > 0.0 ? now.h : 0.0;  // the start takes no time
   for (std::size_t i = 0; i < needles_.size(); ++i)
-    rows.of_needle.push_back(insertion_->add_rows(next.insertions[i], next.needles[i].shaft, tissue,
-                                                  static_cast<int>(i), passing, rows.set));
+    rows.of_needle.push_back(insertion_->add_rows(state.insertions[i], state.needles[i].shaft,
+                                                  tissue, static_cast<int>(i), passing, rows.set));
   return rows;
 }
 
@@ -220,8 +220,7 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
   }
   if (!(residual <= balance_tolerance)) return false;
   // The rows turn with the shaft: the gaps of the new geometry must be closed as well.
-  State probe = next;
-  const Rows again = coupling_rows(now, probe);
+  const Rows again = coupling_rows(now, next);
   for (int i = 0; i < again.set.size(); ++i) {
     const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
     const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&

@@ -107,7 +107,7 @@ class Simulation
   Pass linearised_step(const State& old, const core::TimeStep& now, State& next,
                        StepReport& report);
   void move_needles(const State& old, State& next) const;
-  Rows coupling_rows(const core::TimeStep& now, State& next) const;
+  Rows coupling_rows(const core::TimeStep& now, const State& state) const;
   std::optional<std::string> solve_constraints(const fem::OwnedField& free_increment,
                                                const std::vector<needle::Linearised>& needles,
                                                Pass& pass, StepReport& report);

@@ -208,14 +208,14 @@ void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& frict
   }
 }
 
-std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::Shaft& shaft,
+std::vector<PointRows> Insertion::add_rows(const InsertionState& state, const needle::Shaft& shaft,
                                            const Deformed& tissue, int body, double h,
                                            constraint::Set& set) const
 {
   std::vector<PointRows> rows;
   const core::MatX tributary = tributary_lengths(state);
   for (std::size_t k = 0; k < state.points.size(); ++k) {
-    CouplingPoint& point = state.points[k];
+    const CouplingPoint& point = state.points[k];
     PointRows mine;
     mine.first = set.size();
     constraint::Row row;
@@ -235,12 +235,8 @@ std::vector<PointRows> Insertion::add_rows(InsertionState& state, const needle::
     aim(on_shaft.normal_2, point.lambda[1]);
     set.add(row);
     aim(on_shaft.tangent, point.lambda[2]);
-    row.gap = on_shaft.s - point.needle_arc;
+    row.gap = mine.slid = on_shaft.s - point.needle_arc;
     add_axial_rows(point, friction_of(state, tributary, k), h, row, mine, set);
-    if (mine.axial < 0 && mine.viscous < 0) {  // nothing holds it: it follows the shaft
-      point.stuck = std::abs(row.gap) <= settings_.stick_tolerance;
-      point.needle_arc = on_shaft.s;
-    }
     rows.push_back(mine);
   }
   return rows;
@@ -261,8 +257,8 @@ CouplingReport Insertion::accept(InsertionState& state, const std::vector<PointR
     }
     report.shaft_friction += point.lambda[2];
     const int axial = std::max(rows[k].axial, rows[k].viscous);  // both see the same slip
-    if (axial < 0) continue;
-    const double slip = multipliers.delta[axial];
+    // What nothing holds follows the shaft.
+    const double slip = axial < 0 ? rows[k].slid : multipliers.delta[axial];
     // Inside its box a point sticks, however loosely an unfinished iteration closed its gap.
     const bool inside = rows[k].axial >= 0 && rows[k].bound > 0.0 &&
                         std::abs(multipliers.lambda[rows[k].axial]) < rows[k].bound * (1.0 - 1e-9);

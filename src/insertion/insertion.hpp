@@ -63,6 +63,7 @@ struct PointRows
   int axial = -1;      ///< row of the box (or η) law, -1 when there is none
   int viscous = -1;    ///< row of the dashpot, -1 when there is none
   double bound = 0.0;  ///< F of the box row [N]
+  double slid = 0.0;   ///< axial gap when the rows were made [m]
 };
 
 /// What one needle's coupling did in a step.
@@ -91,7 +92,7 @@ class Insertion
 
   /// Adds this needle's rows at the iterate (deformed tissue and shaft); `body` is its index among
   /// the small bodies, `h` the step length [s], 0 when no time passes: dashpots are then absent.
-  std::vector<PointRows> add_rows(InsertionState& state, const needle::Shaft& shaft,
+  std::vector<PointRows> add_rows(const InsertionState& state, const needle::Shaft& shaft,
                                   const Deformed& tissue, int body, double h,
                                   constraint::Set& set) const;
 

@@ -118,6 +118,28 @@ TEST(Friction, ViscousForceFollowsVelocityAndRelaxes)
   }
 }
 
+// Static friction only: a point that slipped has no axial row, one at rest has; the rows of a step
+// do not change while it is iterated.
+TEST(Friction, MayBeStaticOnly)
+{
+  for (driver::Analysis analysis : {driver::Analysis::dynamic, driver::Analysis::equilibrium}) {
+    driver::Scenario scenario = test::needle_scenario(plain);
+    scenario.needles[0].model = needle::Model::beam;
+    scenario.time.analysis = analysis;
+    scenario.time.newton_max = 20;
+    scenario.needles[0].motion.hold = 0.2;
+    scenario.needles[0].motion.withdraw_velocity = 0.02;
+    scenario.insertion.friction = test::same({5.0, 0.0, 0.0});
+    scenario.time.end = 3.0;
+    const test::Run run = test::run(scenario);
+    EXPECT_EQ(run.reports[75].needles[0].coupling.shaft_friction, 0.0);  // advancing: all slip
+    double peak = 0.0;
+    for (const auto& report : run.reports)
+      peak = std::max(peak, -report.needles[0].coupling.shaft_friction);
+    EXPECT_GT(peak, 0.01);  // from rest it holds first
+  }
+}
+
 TEST(Friction, MayDifferOnWithdrawal)
 {
   driver::Scenario scenario = test::needle_scenario(plain);
