@@ -41,9 +41,12 @@ def plot_force(run, folder):
         label = "" if len(needles) == 1 else f" ({name})"
         axes[0].plot(depth[:turn], friction[:turn], color=BLUE, label="advance and hold" + label)
         axes[0].plot(depth[turn - 1 :], friction[turn - 1 :], color=ORANGE, label="withdrawal" + label)
+        tip = one["tip_force"][:]
+        if tip.max() > 0:
+            axes[0].plot(depth, tip, color=GREY, lw=1.0, label="tip" + label)
         for k, axis in enumerate("xyz"):
             axes[1].plot(time, base[:, k], label=f"base force {axis}{label}", lw=1.2)
-    axes[0].set(xlabel="depth [mm]", ylabel="shaft friction [N]", title="Friction against depth")
+    axes[0].set(xlabel="depth [mm]", ylabel="force [N]", title="Shaft friction and tip force")
     axes[1].set(xlabel="time [s]", ylabel="force of the holder [N]", title="Base force")
     for ax in axes:
         ax.grid(alpha=0.3)

@@ -14,7 +14,7 @@ Sparse rows_on_probes(const Set& set, const std::vector<int>& nodes)
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t a = 0; a < row.anchor.node.size(); ++a) {
       const double weight = row.anchor.weight[static_cast<Eigen::Index>(a)];
       if (weight == 0.0) continue;
       const auto at = std::lower_bound(nodes.begin(), nodes.end(), row.anchor.node[a]);
@@ -46,7 +46,7 @@ std::vector<int> Set::probed_nodes() const
 {
   std::vector<int> nodes;
   for (const Row& row : rows_)
-    for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t a = 0; a < row.anchor.node.size(); ++a)
       if (row.anchor.weight[static_cast<Eigen::Index>(a)] != 0.0)
         nodes.push_back(row.anchor.node[a]);
   std::sort(nodes.begin(), nodes.end());
@@ -83,12 +83,15 @@ Reduced reduce(const Set& set, const fem::Space& space, const fem::OwnedField& f
   problem.bound.resize(set.size());
   problem.start.resize(set.size());
   problem.softness.resize(set.size());
+  problem.friction.resize(set.size());
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
     problem.g[i] += row.gap;
     problem.bound[i] = row.bound;
     problem.softness[i] = row.softness + row.relative_softness * problem.W(i, i);
     problem.start[i] = row.start;
+    problem.friction[i] = row.friction;
+    problem.normal.push_back(row.normal);
     problem.kind.push_back(row.kind);
     problem.group.push_back(row.point);
   }
@@ -100,7 +103,7 @@ fem::OwnedField tissue_forces(const Set& set, const core::VecX& lambda, const fe
   fem::OwnedField forces = space.zero();
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t a = 0; a < row.anchor.node.size(); ++a) {
       const int local = space.owned_local(row.anchor.node[a]);
       if (local >= 0)
         forces.node(local) +=

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -11,11 +10,22 @@ namespace trocar::constraint {
 
 using core::Vec3;
 
-/// Where a row takes hold of the tissue: a material point in a tet, by file nodes and weights.
+/// Where a row takes hold of the tissue: a material place as a weighted mean of nodes. A coupling
+/// point has the four of its tet, a tip's support those around it.
 struct Anchor
 {
-  std::array<int, 4> node;
-  Eigen::Vector4d weight;  ///< barycentric; a zero weight makes no probe
+  std::vector<int> node;  ///< file nodes
+  core::VecX weight;      ///< by node, sum 1; a zero weight makes no probe
+
+  /// Σ weight · value(node).
+  template <class Value>
+  Vec3 mean(const Value& value) const
+  {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t a = 0; a < node.size(); ++a)
+      sum += weight[static_cast<Eigen::Index>(a)] * value(node[a]);
+    return sum;
+  }
 };
 
 /// One constraint row: δ = gap + direction·u(anchor) - h·w, where w are the increments of the
@@ -28,7 +38,9 @@ struct Row
   std::vector<std::pair<int, double>> lever;  ///< (dof of the body, coefficient)
   double gap = 0.0;                           ///< δ at zero increments [m]
   law::RowKind kind = law::RowKind::bilateral;
-  double bound = 0.0;              ///< F of a box row [N]
+  double bound = 0.0;              ///< F of a box or push row [N]
+  int normal = -1;                 ///< row of this set whose λ gives the bound F = friction · λ
+  double friction = 0.0;           ///< coefficient of such a row
   double softness = 0.0;           ///< c of a smooth row, δ = -c λ [m/N]
   double relative_softness = 0.0;  ///< more softness, in units of the row's own W_ii
   double start = 0.0;              ///< multiplier to start from [N]

@@ -1,6 +1,7 @@
 #include "driver/needle_options.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/words.hpp"
 #include "driver/option_source.hpp"
@@ -19,6 +20,7 @@ needle::BaseMotion read_motion(core::Options& options, const std::string& name,
     throw core::option_error("option -needle_direction of '" + name + "' has length 0");
   motion.direction = direction.normalized();
   motion.length = options.real("needle_<needle>_length", name);
+  motion.roll = options.real("needle_<needle>_roll", name);
   motion.inserted = options.real("needle_<needle>_inserted", name);
   motion.velocity = options.real("needle_<needle>_velocity", name);
   motion.depth = options.real("needle_<needle>_depth", name);
@@ -47,6 +49,8 @@ needle::NeedleSettings read_needle(core::Options& options, const std::string& na
   settings.density = options.real("needle_<needle>_density", name);
   settings.elements = options.integer("needle_<needle>_elements", name);
   settings.gravity = options.vector("gravity");
+  const double bevel = options.real("needle_<needle>_bevel", name);
+  settings.bevel = bevel > 0.0 ? 1.0 / std::tan(bevel) : 0.0;
   if (settings.section.inner >= settings.section.outer)
     throw core::option_error("option -needle_inner_radius of '" + name +
                              "' must be less than -needle_radius");

@@ -116,6 +116,13 @@ std::vector<OptionSpec> build_table()
       poisson("needle_poisson", "0.3"),
       not_negative("needle_density", "0", "kg/m^3", "0 = neither weight nor inertia"),
       count("needle_elements", "20", 1, "beam elements"),
+      {"needle_bevel", OptionType::real, "0", "rad",
+       "angle between the tip's face and the axis: tissue that is cut pushes the tip away along "
+       "the "
+       "face's normal; 0 = symmetric tip",
+       0.0, 1.5708, false, false},
+      {"needle_roll", OptionType::real, "0", "rad",
+       "turn of the base about its direction at the start: which way a bevel looks"},
       not_negative("needle_velocity", "0", "m/s", "velocity of the advance"),
       not_negative("needle_depth", "0", "m", "depth of the tip beyond the entry at which it ends"),
       not_negative("needle_hold", "0", "s", "rest between advance and withdrawal"),
@@ -150,6 +157,19 @@ std::vector<OptionSpec> build_table()
     OptionSpec spec = withdrawal("insertion_friction_" + std::string(kind) + "_withdraw");
     with_override(t, spec, "<volume>");
   }
+  with_override(t,
+                not_negative("insertion_puncture_force", "0", "N",
+                             "axial force that pierces a surface, an interface of volumes or a "
+                             "physical surface inside them"),
+                "<volume>");
+  with_override(t,
+                not_negative("insertion_cutting_force", "0", "N",
+                             "axial force that cuts tissue ahead of the tip"),
+                "<volume>");
+  t.push_back(not_negative("insertion_tip_radius", "0", "m",
+                           "tissue that carries the tip's force; at least one local edge"));
+  t.push_back(not_negative("insertion_tip_friction", "1", "1",
+                           "lateral over axial force at which the tip slides on a surface"));
   t.push_back({"insertion_eta", OptionType::real, "0", "1",
                "axial force as this part of the sticking one (the papers' law; depends on mesh and "
                "step, for reproduction only); 0 = off",

@@ -93,6 +93,8 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                  {at + "shaft_friction", 0, "N"},
                                  {at + "tip_force", 0, "N"},
                                  {at + "friction_work", 0, "J"},
+                                 {at + "cutting_work", 0, "J"},
+                                 {at + "punctures", 0, "1"},
                                  {at + "points", 0, "1"},
                                  {at + "slipping", 0, "1"}});
   }
@@ -137,14 +139,15 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
     const auto& points = state.insertions[i].points;
     const auto slipping =
         std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.stuck; });
-    // No law acts on the tip yet, so its force is what it is: zero.
     row.insert(row.end(), {components(needle.tip),
                            {needle.depth},
                            components(needle.base.force),
                            components(needle.base.moment),
                            {needle.coupling.shaft_friction},
-                           {0.0},
+                           {needle.coupling.tip_force},
                            {needle.coupling.friction_work},
+                           {needle.coupling.cutting_work},
+                           {static_cast<double>(state.insertions[i].tip.punctures)},
                            {static_cast<double>(points.size())},
                            {static_cast<double>(slipping)}});
   }
@@ -180,11 +183,9 @@ std::vector<io::Field> coupling_fields(const Simulation& simulation, const State
     for (std::size_t k = 0; k < insertion.points.size(); ++k) {
       const auto& point = insertion.points[k];
       const auto& anchor = insertion.path.sites[static_cast<std::size_t>(point.site)].anchor;
-      Vec3 x = Vec3::Zero();
-      for (std::size_t a = 0; a < 4; ++a)
-        x += anchor.weight[static_cast<Eigen::Index>(a)] *
-             (simulation.scenario().mesh.x[static_cast<std::size_t>(anchor.node[a])] +
-              u.node(anchor.node[a]));
+      const Vec3 x = anchor.mean([&](int node) -> Vec3 {
+        return simulation.scenario().mesh.x[static_cast<std::size_t>(node)] + u.node(node);
+      });
       id.values.push_back(1e6 * static_cast<double>(n) + insertion.path.first_id + point.site);
       position.values.insert(position.values.end(), x.data(), x.data() + 3);
       lambda.values.insert(lambda.values.end(), point.lambda.data(), point.lambda.data() + 3);

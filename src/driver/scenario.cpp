@@ -139,6 +139,16 @@ insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& 
   for (const std::string& volume : mesh.volumes)
     settings.friction.push_back(read_friction(options, volume));
   settings.eta = options.real("insertion_eta");
+  const std::string puncture = "insertion_<volume>_puncture_force";
+  for (const std::string& volume : mesh.volumes) {
+    settings.puncture.volume.push_back(options.real(puncture, volume));
+    settings.tip.cutting.push_back(options.real("insertion_<volume>_cutting_force", volume));
+  }
+  for (const mesh::SurfaceGroup& surface : mesh.surfaces)
+    settings.puncture.surface.push_back(
+        options.given(puncture, surface.name) ? options.real(puncture, surface.name) : -1.0);
+  settings.tip.radius = options.real("insertion_tip_radius");
+  settings.tip.friction = options.real("insertion_tip_friction");
   settings.stick_tolerance = options.real("constraint_tolerance");
   return settings;
 }

@@ -139,7 +139,7 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
 {
   Rows rows;
   const bool coupled = std::any_of(state.insertions.begin(), state.insertions.end(),
-                                   [](const auto& one) { return !one.points.empty(); });
+                                   [](const auto& one) { return one.touches(); });
   if (!coupled) return rows;
   const fem::GlobalField u = space_.gather(state.tissue.u);
   const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
@@ -236,6 +236,10 @@ void Simulation::accept(const Pass& pass, State& next, StepReport& report) const
     NeedleReport& needle = report.needles[i];
     if (!pass.rows.set.empty())
       needle.coupling = insertion_->accept(next.insertions[i], pass.rows.of_needle[i], pass.lambda);
+    if (needle.coupling.yields) {
+      const fem::GlobalField u = space_.gather(next.tissue.u);
+      insertion_->cut(next.insertions[i], next.needles[i].shaft, {scenario_.mesh, *locator_, u});
+    }
     needle.tip = next.needles[i].shaft.tip();
     needle.depth = insertion_->depth(next.insertions[i]);
   }

@@ -91,7 +91,7 @@ class Simulation
   struct Rows
   {
     constraint::Set set;
-    std::vector<std::vector<insertion::PointRows>> of_needle;
+    std::vector<insertion::CouplingRows> of_needle;
   };
   /// One linearisation: its rows and what they answered.
   struct Pass

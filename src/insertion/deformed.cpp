@@ -21,19 +21,23 @@ Deformed::Deformed(const mesh::Mesh& mesh, const mesh::Locator& locator, const f
 
 Vec3 Deformed::displacement(const constraint::Anchor& anchor) const
 {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t a = 0; a < 4; ++a)
-    sum += anchor.weight[static_cast<Eigen::Index>(a)] * u_->node(anchor.node[a]);
-  return sum;
+  return anchor.mean([this](int node) -> Vec3 { return u_->node(node); });
 }
 
 Vec3 Deformed::position(const constraint::Anchor& anchor) const
 {
-  Vec3 sum = displacement(anchor);
-  for (std::size_t a = 0; a < 4; ++a)
-    sum += anchor.weight[static_cast<Eigen::Index>(a)] *
-           mesh_->x[static_cast<std::size_t>(anchor.node[a])];
-  return sum;
+  return anchor.mean([this](int node) -> Vec3 {
+    return mesh_->x[static_cast<std::size_t>(node)] + u_->node(node);
+  });
+}
+
+Vec3 Deformed::place(const Vec3& X, int tet) const
+{
+  const Eigen::Vector4d weight = mesh::barycentric(mesh::corners(*mesh_, tet), X);
+  const auto corner = corners_now(tet);
+  Vec3 x = Vec3::Zero();
+  for (std::size_t a = 0; a < 4; ++a) x += weight[static_cast<Eigen::Index>(a)] * corner[a];
+  return x;
 }
 
 std::array<Vec3, 4> Deformed::corners_now(int tet) const

@@ -17,6 +17,8 @@ class Deformed
   Vec3 displacement(const constraint::Anchor& anchor) const;  ///< [m]
   Vec3 position(const constraint::Anchor& anchor) const;      ///< where the anchor is now [m]
 
+  Vec3 place(const Vec3& X, int tet) const;  ///< where the reference place X in a tet is now [m]
+
   /// Reference place of the world point x, searched near the reference place `guess`; nothing when
   /// x is in no tet.
   std::optional<Vec3> reference_place(const Vec3& x, const Vec3& guess) const;

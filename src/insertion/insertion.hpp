@@ -6,13 +6,16 @@
 
 #include "constraint/set.hpp"
 #include "insertion/deformed.hpp"
+#include "insertion/membranes.hpp"
 #include "insertion/path.hpp"
+#include "insertion/tip.hpp"
 #include "law/problem.hpp"
 #include "needle/needle.hpp"
 
 namespace trocar::insertion {
 
-enum class Phase { outside, inserted, withdrawn };
+/// `contact`: the tip presses on the surface, which is not punctured yet; the path is that place.
+enum class Phase { outside, contact, inserted, withdrawn };
 
 /// State of one coupling point: a material place of the tissue held by the shaft. A point is born
 /// when the tip passes it, slipping, as if it had slipped for the whole step.
@@ -32,6 +35,9 @@ struct InsertionState
   double tip_arc = 0.0;               ///< where the tip is along the path [m]
   bool withdrawing = false;           ///< the tip last moved backwards along the path
   std::vector<CouplingPoint> points;  ///< by site, all at or behind the tip
+  TipState tip;
+
+  bool touches() const { return tip.pressed || !points.empty(); }  ///< rows are to be made
 };
 
 /// Shaft friction per length of one tissue in one direction (docs/theory.md section 5).
@@ -54,6 +60,8 @@ struct InsertionSettings
   std::vector<TissueFriction> friction;  ///< by volume of the mesh
   double eta = 0.0;  ///< > 0: the axial force is η times that of sticking, instead of all friction
   double stick_tolerance = 1e-9;  ///< |δ| below which a point has stuck [m]
+  TipSettings tip{};
+  PunctureSettings puncture{};
 };
 
 /// Which rows a coupling point got in a set, and where it was on the shaft.
@@ -66,11 +74,21 @@ struct PointRows
   double slid = 0.0;   ///< axial gap when the rows were made [m]
 };
 
+/// Rows of one needle in a set.
+struct CouplingRows
+{
+  std::vector<PointRows> points;
+  TipRows tip;
+};
+
 /// What one needle's coupling did in a step.
 struct CouplingReport
 {
   double shaft_friction = 0.0;  ///< Σ axial λ [N], > 0 resists insertion
   double friction_work = 0.0;   ///< Σ λ δ of the axial rows [J], <= 0 (η law: no such bound)
+  double tip_force = 0.0;       ///< axial λ on the tip [N], >= 0
+  double cutting_work = 0.0;    ///< λ δ of the tip's axial row [J], <= 0
+  bool yields = false;          ///< the tissue ahead of the tip gave way: call `cut`
 };
 
 /// The coupling of needles and tissue: path, coupling points and their rows.
@@ -86,19 +104,23 @@ class Insertion
   InsertionState start(const needle::Needle& needle) const;
 
   /// Events of a step, decided before the solve: the tip at its predicted place is mapped through
-  /// the old deformation; the path grows, points are born at the tip or dropped ahead of it.
+  /// the old deformation; the path grows where nothing resists, points are born at the tip or
+  /// dropped ahead of it.
   InsertionState advance(const InsertionState& old, const needle::Shaft& predicted,
                          const Deformed& tissue) const;
 
   /// Adds this needle's rows at the iterate (deformed tissue and shaft); `body` is its index among
   /// the small bodies, `h` the step length [s], 0 when no time passes: dashpots are then absent.
-  std::vector<PointRows> add_rows(const InsertionState& state, const needle::Shaft& shaft,
-                                  const Deformed& tissue, int body, double h,
-                                  constraint::Set& set) const;
+  CouplingRows add_rows(const InsertionState& state, const needle::Shaft& shaft,
+                        const Deformed& tissue, int body, double h, constraint::Set& set) const;
 
-  /// Takes multipliers and end-of-step gaps back into the points: stick or slip.
-  CouplingReport accept(InsertionState& state, const std::vector<PointRows>& rows,
+  /// Takes multipliers and end-of-step gaps back into points and tip: stick or slip, hold or yield.
+  CouplingReport accept(InsertionState& state, const CouplingRows& rows,
                         const law::Multipliers& multipliers) const;
+
+  /// Where the tissue ahead of the tip yielded, the path grows by the tip's advance, up to the next
+  /// membrane; `shaft` and `tissue` as they are at the end of the step.
+  void cut(InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
 
   /// Depth: length of the inserted path that lies in tissue [m].
   double depth(const InsertionState& state) const;
@@ -109,18 +131,31 @@ class Insertion
 
  private:
   InsertionState enter(const InsertionState& old, const needle::Shaft& predicted,
-                       const Deformed& tissue, const CouplingPoint& born) const;
+                       const Deformed& tissue) const;
+  InsertionState keep_contact(const InsertionState& old, const needle::Shaft& predicted,
+                              const Deformed& tissue) const;
+  void touch_surface(InsertionState& state, const Vec3& X) const;
+  void grow_to(InsertionState& state, const Vec3& X) const;
+  double resistance(const InsertionState& state) const;
+  void press(InsertionState& state, double arc) const;
+  Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;
+  PointRows add_point_rows(const CouplingPoint& point, const Path& path, const Friction& friction,
+                           const needle::Shaft& shaft, const Deformed& tissue, int body, double h,
+                           constraint::Set& set) const;
   void add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
                       constraint::Row row, PointRows& mine, constraint::Set& set) const;
+  void accept_point(CouplingPoint& point, const PointRows& rows,
+                    const law::Multipliers& multipliers, CouplingReport& report) const;
   void drop_points_ahead(InsertionState& state, double arc) const;
-  void add_points_behind(InsertionState& state, double arc, const CouplingPoint& born) const;
+  void add_points_behind(InsertionState& state, double arc, double needle_length) const;
   bool passed(const InsertionState& state, std::size_t site, double arc) const;
 
   const mesh::Mesh* mesh_;
   const mesh::Locator* locator_;
   InsertionSettings settings_;
+  Membranes membranes_;
 };
 
 }  // namespace trocar::insertion

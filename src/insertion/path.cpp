@@ -90,7 +90,8 @@ double mean_edge(const std::array<Vec3, 4>& p)
 
 void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
 {
-  Site site{arc, tet, {mesh.tets[static_cast<std::size_t>(tet)], {}}};
+  const mesh::Tet& nodes = mesh.tets[static_cast<std::size_t>(tet)];
+  Site site{arc, tet, {{nodes.begin(), nodes.end()}, {}}};
   Eigen::Vector4d weight = mesh::barycentric(mesh::corners(mesh, tet), X);
   for (int a = 0; a < 4; ++a)
     if (weight[a] < relative_tolerance) weight[a] = 0.0;  // on a face: the opposite node is free

@@ -14,7 +14,8 @@ using core::VecX;
 /// The law of one constraint row.
 enum class RowKind : std::uint8_t {
   bilateral,  ///< δ = 0, λ free
-  box         ///< |λ| <= F;  stick: δ = 0;  slip: λ = -F sign(δ)
+  box,        ///< |λ| <= F;  stick: δ = 0;  slip: λ = -F sign(δ)
+  push        ///< 0 <= λ <= F;  contact: δ = 0;  apart: δ > 0, λ = 0;  yielding: δ < 0, λ = F
 };
 
 /// The dense problem  δ = W λ + g, (δ, λ) in every row's law  (DESIGN eq., paper eq. 3).
@@ -25,6 +26,10 @@ struct Problem
   VecX g;                     ///< violation after free motion (rows) [m]
   std::vector<RowKind> kind;  ///< per row
   VecX bound;                 ///< F >= 0 (rows) [N]; ignored on bilateral rows
+  /// Rows whose bound follows another multiplier, F = friction · max(λ_normal, 0): the row's index
+  /// or -1 (rows, or empty: all bounds fixed), and the coefficient.
+  std::vector<int> normal;
+  VecX friction;
   /// Smooth rows: a bilateral row with softness c obeys δ = -c λ, a linear dashpot or spring
   /// (rows, or empty: all hard) [m/N].
   VecX softness;
@@ -55,13 +60,16 @@ struct Multipliers
   bool converged = false;
   std::string why;         ///< when not converged: one line for the log
   int iterations = 0;      ///< sweeps, or factorisations with those of a fallback included
+  int outer = 1;           ///< solves with fixed bounds until state-dependent ones settled
+  double contraction = 0;  ///< ratio of their last two changes, < 1 when they settle
   double residual = 0.0;   ///< true KKT residual [m], see `kkt_residual`
   int rank = 0;            ///< numerical rank of W
   bool nonunique = false;  ///< single λ are not unique (δ, forces and work are)
 };
 
 /// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
-/// zero exactly at a solution. Rows with W_ii = 0 cannot move and do not count.
+/// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes).
+/// Rows with W_ii = 0 cannot move and do not count.
 double kkt_residual(const Problem& problem, const VecX& lambda);
 
 /// Numerical rank of a symmetric positive semidefinite matrix and a set of `rank` well-conditioned

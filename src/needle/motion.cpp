@@ -9,7 +9,8 @@ namespace trocar::needle {
 
 Pose BaseMotion::start() const
 {
-  return {entry + (inserted - length) * direction, core::frame_along(direction)};
+  return {entry + (inserted - length) * direction,
+          core::rotation_exp(roll * direction) * core::frame_along(direction)};
 }
 
 Pose BaseMotion::at(double t) const

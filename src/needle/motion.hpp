@@ -27,6 +27,7 @@ struct BaseMotion
   Vec3 entry = Vec3::Zero();       ///< where the path enters [m]
   Vec3 direction = Vec3::UnitX();  ///< unit
   double length = 0.0;             ///< of the needle [m]
+  double roll = 0.0;               ///< of the base about the direction at the start [rad]
   double inserted = 0.0;           ///< depth of the tip at the start [m]
   double velocity = 0.0;           ///< [m/s]
   double depth = 0.0;              ///< where the advance ends [m]

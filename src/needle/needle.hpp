@@ -23,6 +23,7 @@ struct NeedleSettings
   Section section;
   double density = 0.0;  ///< [kg/m³], 0: neither weight nor inertia
   int elements = 20;
+  double bevel = 0.0;           ///< see Shaft::bevel
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
 };
 

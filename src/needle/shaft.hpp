@@ -17,6 +17,7 @@ struct Shaft
   double length = 0.0;  ///< at rest [m]
   std::vector<Vec3> x;  ///< nodes from base to tip [m]
   std::vector<Mat3> R;  ///< their frames
+  double bevel = 0.0;   ///< lateral over axial force of the tip's face, along its frame's 2nd axis
 
   int elements() const { return static_cast<int>(x.size()) - 1; }
   double element_length() const { return length / elements(); }

@@ -43,6 +43,11 @@ refuses("unknown volume in an override", 64, ["-tissue_liver_young", "did you me
 refuses("override of no needle", 64, ["-needle_b_depth"], {"-needle_b_depth": "0.01"})
 refuses("no supports in statics", 64, ["-fix"], {"-analysis": "static"}, remove=["-fix"])
 refuses("no supports for an equilibrium", 64, ["-fix"], {"-time_initial": "equilibrium", "-fix": "z0:z"})
+refuses("negative puncture force", 64, ["-insertion_puncture_force", "-1"],
+        {"-insertion_puncture_force": "-1"})
+refuses("puncture force of no surface", 64, ["-insertion_z9_puncture_force"],
+        {"-insertion_z9_puncture_force": "1"})
+refuses("bevel beyond a right angle", 64, ["-needle_bevel"], {"-needle_bevel": "2"})
 refuses("negative modulus", 64, ["-tissue_young", "-5"], {"-tissue_young": "-5"})
 refuses("Poisson's ratio of 0.5", 64, ["-tissue_poisson"], {"-tissue_poisson": "0.5"})
 refuses("NaN", 64, ["-tissue_density", "nan"], {"-tissue_density": "nan"})

@@ -37,6 +37,12 @@ for provider, more in (("ksp", {}), ("ksp_block", {}), ("auto", {"-tissue_ksp_ty
     expected = solves + (0 if provider == "ksp_block" else work["columns_built"])
     check(work["solves"] == expected, f"{provider}: {work['solves']} solves accounted for")
 
+layers = options("layers.opts")
+layers.update({"-time_end": "2.5"})
+work = ledger(completed(layers))
+check(work["assemblies"] == 1 and work["factorisations"] == 1,
+      "puncture and cutting of linear tissue: one assembly and one factorisation")
+
 gel = options("gel_insertion.opts")
 gel.update({"-time_end": "0.4"})
 work = ledger(completed(gel))

@@ -16,10 +16,15 @@ exact = {**ties, "-insertion_friction_static": "0", "-insertion_friction_dynamic
 plane = {**exact, "-needle_entry": "0,0.0123,0.02", "-insertion_merge": "0"}
 iterative = {**ties, "-time_end": "1", "-tissue_ksp_type": "cg", "-tissue_pc_type": "bjacobi",
              "-tissue_ksp_rtol": "1e-13"}
+layers = options("layers.opts")
+layers.update({"-time_end": "3", "-output_every": "50"})
+steering = options("steering.opts")
+steering.update({"-time_end": "2", "-output_every": "10"})
 
 for name, settings, tolerance in [
     ("no ties (gel)", gel, 1e-8), ("ties", ties, 1e-8), ("tip exactly on vertices", exact, 1e-8),
-    ("path in a face plane", plane, 1e-8), ("iterative solver", iterative, 1e-6)]:
+    ("path in a face plane", plane, 1e-8), ("puncture in layers", layers, 1e-8),
+    ("bevel", steering, 1e-8), ("iterative solver", iterative, 1e-6)]:
     folders = [completed(settings, ranks) for ranks in (1, 2, 3)]
     first = histories(folders[0])
     for ranks, folder in zip((2, 3), folders[1:]):

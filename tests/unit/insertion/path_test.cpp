@@ -186,8 +186,8 @@ TEST(Deformed, PullsWorldPointsBackThroughTheDeformation)
         map(scene.mesh.x[static_cast<std::size_t>(i)]) - scene.mesh.x[static_cast<std::size_t>(i)];
   const Deformed tissue(scene.mesh, scene.locator, u);
   for (int t = 0; t < scene.mesh.tet_count(); t += 37) {
-    const constraint::Anchor anchor{scene.mesh.tets[static_cast<std::size_t>(t)],
-                                    Eigen::Vector4d(0.1, 0.2, 0.3, 0.4)};
+    const mesh::Tet& tet = scene.mesh.tets[static_cast<std::size_t>(t)];
+    const constraint::Anchor anchor{{tet.begin(), tet.end()}, Eigen::Vector4d(0.1, 0.2, 0.3, 0.4)};
     Vec3 X = Vec3::Zero();
     for (std::size_t a = 0; a < 4; ++a)
       X += anchor.weight[static_cast<Eigen::Index>(a)] *

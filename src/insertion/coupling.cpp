@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+
+#include "insertion/insertion.hpp"
+
+// The rows that couple one needle and the tissue in a step, and what is made of their multipliers.
+namespace trocar::insertion {
+
+double Insertion::depth(const InsertionState& state) const
+{
+  return state.path.empty() ? 0.0 : tissue_length(state.path, state.tip_arc);
+}
+
+core::MatX Insertion::tributary_lengths(const InsertionState& state) const
+{
+  const auto points = static_cast<Eigen::Index>(state.points.size());
+  core::MatX length = core::MatX::Zero(points, static_cast<Eigen::Index>(mesh_->volumes.size()));
+  if (points == 0) return length;
+  const auto arc_of = [&](Eigen::Index k) {
+    const int site = state.points[static_cast<std::size_t>(k)].site;
+    return state.path.sites[static_cast<std::size_t>(site)].arc;
+  };
+  for (const Piece& piece : state.path.pieces) {
+    if (piece.tet < 0) continue;
+    const int region = mesh_->region[static_cast<std::size_t>(piece.tet)];
+    double at = piece.begin;
+    const double end = std::min(piece.end, state.tip_arc);
+    for (Eigen::Index k = 0; k < points && at < end; ++k) {
+      // The cell of point k ends half-way to the next one; the last one's at the tip.
+      const double border = k + 1 < points ? 0.5 * (arc_of(k) + arc_of(k + 1)) : end;
+      if (border <= at) continue;
+      length(k, region) += std::min(border, end) - at;
+      at = std::min(border, end);
+    }
+  }
+  return length;
+}
+
+/// Limits [N] and dashpot [N s/m] of one point: the laws of the tissues its piece of path is in.
+Friction Insertion::friction_of(const InsertionState& state, const core::MatX& tributary,
+                                std::size_t point) const
+{
+  Friction sum;
+  for (std::size_t region = 0; region < settings_.friction.size(); ++region) {
+    const double length =
+        tributary(static_cast<Eigen::Index>(point), static_cast<Eigen::Index>(region));
+    const TissueFriction& both = settings_.friction[region];
+    const Friction& law = state.withdrawing ? both.withdraw : both.advance;
+    sum.static_limit += length * law.static_limit;
+    sum.dynamic_limit += length * law.dynamic_limit;
+    sum.viscous += length * law.viscous;
+  }
+  return sum;
+}
+
+void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
+                               constraint::Row row, PointRows& mine, constraint::Set& set) const
+{
+  const auto add = [&] {
+    set.add(row);
+    return set.size() - 1;
+  };
+  if (settings_.eta > 0.0) {
+    row.relative_softness = (1.0 - settings_.eta) / settings_.eta;
+    mine.axial = add();
+    return;
+  }
+  if (h > 0.0 && friction.viscous > 0.0) {
+    row.softness = h / friction.viscous;
+    mine.viscous = add();
+    row.softness = 0.0;
+  }
+  mine.bound = point.stuck ? friction.static_limit : friction.dynamic_limit;
+  if (mine.bound > 0.0) {
+    row.kind = law::RowKind::box;
+    row.bound = mine.bound;
+    mine.axial = add();
+  }
+}
+
+PointRows Insertion::add_point_rows(const CouplingPoint& point, const Path& path,
+                                    const Friction& friction, const needle::Shaft& shaft,
+                                    const Deformed& tissue, int body, double h,
+                                    constraint::Set& set) const
+{
+  PointRows mine;
+  mine.first = set.size();
+  constraint::Row row;
+  row.anchor = path.sites[static_cast<std::size_t>(point.site)].anchor;
+  row.body = body;
+  row.point = mine.first;
+  const Vec3 p = tissue.position(row.anchor);
+  const needle::ShaftPoint on_shaft = needle::project(shaft, p);
+  const auto aim = [&](const Vec3& direction, double start) {
+    row.direction = direction;
+    row.gap = direction.dot(p - on_shaft.x);
+    row.lever = needle::lever(shaft, on_shaft.s, direction);
+    row.start = start;
+  };
+  aim(on_shaft.normal_1, point.lambda[0]);
+  set.add(row);
+  aim(on_shaft.normal_2, point.lambda[1]);
+  set.add(row);
+  aim(on_shaft.tangent, point.lambda[2]);
+  row.gap = mine.slid = on_shaft.s - point.needle_arc;
+  add_axial_rows(point, friction, h, row, mine, set);
+  return mine;
+}
+
+CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaft& shaft,
+                                 const Deformed& tissue, int body, double h,
+                                 constraint::Set& set) const
+{
+  CouplingRows rows;
+  const core::MatX tributary = tributary_lengths(state);
+  for (std::size_t k = 0; k < state.points.size(); ++k)
+    rows.points.push_back(add_point_rows(state.points[k], state.path,
+                                         friction_of(state, tributary, k), shaft, tissue, body, h,
+                                         set));
+  if (state.tip.pressed)
+    rows.tip = add_tip_rows(state.tip, state.phase == Phase::contact, resistance(state),
+                            settings_.tip.friction, shaft, tissue, body, set);
+  return rows;
+}
+
+void Insertion::accept_point(CouplingPoint& point, const PointRows& rows,
+                             const law::Multipliers& multipliers, CouplingReport& report) const
+{
+  point.lambda.setZero();
+  point.lambda.head<2>() = multipliers.lambda.segment<2>(rows.first);
+  for (int row : {rows.axial, rows.viscous}) {
+    if (row < 0) continue;
+    point.lambda[2] += multipliers.lambda[row];
+    report.friction_work += multipliers.lambda[row] * multipliers.delta[row];
+  }
+  report.shaft_friction += point.lambda[2];
+  const int axial = std::max(rows.axial, rows.viscous);  // both see the same slip
+  // What nothing holds follows the shaft.
+  const double slip = axial < 0 ? rows.slid : multipliers.delta[axial];
+  // Inside its box a point sticks, however loosely an unfinished iteration closed its gap.
+  const bool inside = rows.axial >= 0 && rows.bound > 0.0 &&
+                      std::abs(multipliers.lambda[rows.axial]) < rows.bound * (1.0 - 1e-9);
+  point.stuck = inside || std::abs(slip) <= settings_.stick_tolerance;
+  if (!point.stuck) point.needle_arc += slip;
+}
+
+CouplingReport Insertion::accept(InsertionState& state, const CouplingRows& rows,
+                                 const law::Multipliers& multipliers) const
+{
+  CouplingReport report;
+  for (std::size_t k = 0; k < rows.points.size(); ++k)
+    accept_point(state.points[k], rows.points[k], multipliers, report);
+  if (rows.tip.axial < 0) return report;
+  const TipOutcome outcome =
+      accept_tip(state.tip, rows.tip, multipliers, settings_.stick_tolerance);
+  const double delta = multipliers.delta[rows.tip.axial];
+  report.tip_force = state.tip.lambda[2];
+  report.cutting_work = report.tip_force * delta;
+  if (rows.tip.lateral >= 0)
+    report.friction_work += multipliers.lambda.segment<2>(rows.tip.lateral)
+                                .dot(multipliers.delta.segment<2>(rows.tip.lateral));
+  report.yields = outcome == TipOutcome::yields;
+  if (outcome != TipOutcome::apart) return report;
+  state.tip.pressed = false;
+  if (state.phase == Phase::contact) {
+    state.phase = Phase::outside;
+    const int first_id = state.path.first_id;
+    state.path = {};
+    state.path.first_id = first_id;
+  } else {
+    state.tip_arc = state.path.length() - delta;
+  }
+  return report;
+}
+
+}  // namespace trocar::insertion

@@ -1,0 +1,124 @@
+#include "insertion/tip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace trocar::insertion {
+namespace {
+
+/// One of each opposite pair of samples of the unit disc normal to e_z (`flat`) or unit ball.
+std::vector<Vec3> half_samples(bool flat)
+{
+  std::vector<Vec3> samples;
+  if (flat) {
+    constexpr int rings = 6, spokes = 6;
+    for (int ring = 0; ring < rings; ++ring) {
+      // Equal shares of the force: F(<r)/F = 1 - (1 - r²)^(3/2).
+      const double share = (ring + 0.5) / rings;
+      const double r = std::sqrt(1.0 - std::cbrt((1.0 - share) * (1.0 - share)));
+      for (int spoke = 0; spoke < spokes; ++spoke) {
+        const double angle = std::numbers::pi * (spoke + 0.5 * (ring % 2)) / spokes;
+        samples.emplace_back(r * std::cos(angle), r * std::sin(angle), 0.0);
+      }
+    }
+    return samples;
+  }
+  constexpr int shells = 4;
+  const std::vector<Vec3> directions{{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
+                                     {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+  for (int shell = 0; shell < shells; ++shell)
+    for (const Vec3& d : directions)
+      samples.push_back(std::cbrt((shell + 0.5) / shells) * d.normalized());
+  return samples;
+}
+
+}  // namespace
+
+constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& X,
+                               int tet, double radius, const Vec3* disc)
+{
+  std::map<int, double> weight;  // by node
+  const auto add = [&](int in, const Vec3& place) {
+    const Eigen::Vector4d share = mesh::barycentric(mesh::corners(mesh, in), place);
+    for (std::size_t a = 0; a < 4; ++a)
+      weight[mesh.tets[static_cast<std::size_t>(in)][a]] += share[static_cast<Eigen::Index>(a)];
+  };
+  const core::Mat3 frame = disc ? core::frame_along(*disc) : core::Mat3::Identity();
+  for (const Vec3& s : half_samples(disc != nullptr)) {
+    // frame_along puts the normal first; the disc's samples have none of it.
+    const Vec3 arm = radius * (disc ? Vec3(s.x() * frame.col(1) + s.y() * frame.col(2)) : s);
+    const int one = locator.tet_at(X + arm);
+    const int other = locator.tet_at(X - arm);
+    if (one < 0 || other < 0) continue;
+    add(one, X + arm);
+    add(other, X - arm);
+  }
+  add(tet, X);
+  double sum = 0.0;
+  for (const auto& [node, share] : weight) sum += share;
+  constraint::Anchor anchor;
+  anchor.weight.resize(static_cast<Eigen::Index>(weight.size()));
+  for (const auto& [node, share] : weight) {
+    // Places on a face have round-off for the weight of the opposite node.
+    anchor.weight[static_cast<Eigen::Index>(anchor.node.size())] =
+        std::abs(share) < 1e-9 * sum ? 0.0 : share / sum;
+    anchor.node.push_back(node);
+  }
+  return anchor;
+}
+
+TipRows add_tip_rows(const TipState& tip, bool on_surface, double limit, double friction,
+                     const needle::Shaft& shaft, const Deformed& tissue, int body,
+                     constraint::Set& set)
+{
+  TipRows mine;
+  mine.limit = limit;
+  constraint::Row row;
+  row.anchor = tip.hold;
+  row.body = body;
+  row.point = set.size();
+  const needle::ShaftPoint end = needle::shaft_at(shaft, shaft.length);
+  const Vec3 apart = tissue.position(tip.hold) - end.x;
+  const auto aim = [&](const Vec3& direction, double start) {
+    row.direction = direction;
+    row.gap = direction.dot(apart);
+    row.lever = needle::lever(shaft, shaft.length, direction);
+    row.start = start;
+  };
+  // On a surface the point touches, not yet the face behind it.
+  aim(end.tangent + (on_surface ? 0.0 : shaft.bevel) * end.normal_1, tip.lambda[2]);
+  row.kind = law::RowKind::push;
+  row.bound = limit;
+  mine.axial = set.size();
+  set.add(row);
+  if (!on_surface) return mine;
+  row.kind = law::RowKind::box;
+  row.normal = mine.axial;
+  row.friction = friction;
+  row.bound = friction * std::max(tip.lambda[2], 0.0);
+  mine.lateral = set.size();
+  aim(end.normal_1, tip.lambda[0]);
+  set.add(row);
+  aim(end.normal_2, tip.lambda[1]);
+  set.add(row);
+  return mine;
+}
+
+TipOutcome accept_tip(TipState& tip, const TipRows& rows, const law::Multipliers& multipliers,
+                      double tolerance)
+{
+  const double lambda = multipliers.lambda[rows.axial];
+  const double delta = multipliers.delta[rows.axial];
+  tip.lambda = Vec3(0.0, 0.0, lambda);
+  tip.slid = false;
+  if (rows.lateral >= 0) {
+    tip.lambda.head<2>() = multipliers.lambda.segment<2>(rows.lateral);
+    tip.slid = multipliers.delta.segment<2>(rows.lateral).norm() > tolerance;
+  }
+  if (delta < -tolerance && lambda >= rows.limit * (1.0 - 1e-9)) return TipOutcome::yields;
+  return delta > tolerance ? TipOutcome::apart : TipOutcome::holds;
+}
+
+}  // namespace trocar::insertion

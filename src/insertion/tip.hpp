@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "insertion/deformed.hpp"
+#include "law/problem.hpp"
+#include "needle/shaft.hpp"
+
+namespace trocar::insertion {
+
+/// What resists the tip (docs/theory.md section 6).
+struct TipSettings
+{
+  std::vector<double> cutting;  ///< f_cut by volume of the mesh [N]
+  double radius = 0.0;          ///< of the tip's support [m]; never less than the local edge
+  double friction = 1.0;  ///< lateral over axial force of the tip on a surface not yet punctured
+};
+
+/// How the tip stands to the tissue ahead of it.
+struct TipState
+{
+  bool pressed = false;     ///< at the end of its channel: the tissue there resists
+  double threshold = 0.0;   ///< f_p of the membrane at the channel's end [N], 0: none, or pierced
+  constraint::Anchor hold;  ///< support of the place it presses on
+  int tet = -1;             ///< that holds this place
+  Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
+  bool slid = false;           ///< along a surface in the last step
+  int punctures = 0;           ///< membranes pierced so far
+};
+
+/// Rows the tip got in a set.
+struct TipRows
+{
+  int axial = -1;      ///< -1: none
+  int lateral = -1;    ///< first of two, on a surface
+  double limit = 0.0;  ///< the axial force at which the tissue yields [N]
+};
+
+/// What came of the tip's rows.
+enum class TipOutcome { holds, yields, apart };
+
+/// A mean over the tissue within `radius` of the reference place X: uniform in the ball, or
+/// (`disc`) with Hertz's pressure sqrt(1 - r²/R²) on the disc normal to it. Sample places come in
+/// opposite pairs that are dropped together where one lies outside, so that the mean place stays X.
+constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& X,
+                               int tet, double radius, const Vec3* disc);
+
+/// Rows of a pressed tip: axial push 0 <= λ <= limit on δ = m·(tissue - tip), with m the tangent
+/// plus the bevel's lateral part, and on a surface two lateral rows with Coulomb's bound.
+TipRows add_tip_rows(const TipState& tip, bool on_surface, double limit, double friction,
+                     const needle::Shaft& shaft, const Deformed& tissue, int body,
+                     constraint::Set& set);
+
+/// Takes the multipliers back into the tip. `tolerance` is the gap below which it touches [m].
+TipOutcome accept_tip(TipState& tip, const TipRows& rows, const law::Multipliers& multipliers,
+                      double tolerance);
+
+}  // namespace trocar::insertion
