@@ -36,6 +36,7 @@ void Log::set_up(double seconds) const
 void Log::step(int number, const State& state, const StepReport& report)
 {
   if (!speaks()) return;
+  energy_ = state.energy;
   if (lines_++ % 40 == 0)
     std::printf("%6s %10s %10s %6s %6s %10s %12s %8s\n", "step", "time [s]", "depth [mm]", "rows",
                 "iters", "resid [m]", "base [N]", "ETA [s]");
@@ -69,6 +70,12 @@ void Log::finish() const
   for (const auto& [name, count] : simulation_->ledger().entries())
     if (count != 0)
       std::printf(" %s %lld", std::string(name).c_str(), static_cast<long long>(count));
+  if (simulation_->scenario().output.energy)
+    std::printf(
+        "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "
+        "+ friction %.4g + cutting %.4g + damping %.4g + rest %.2g",
+        energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start,
+        energy_.friction, energy_.cutting, energy_.damping, energy_.rest());
   std::printf("\nfinished in %.1f s; results in %s\n", watch_.seconds(),
               simulation_->scenario().output.folder.c_str());
 }

@@ -24,6 +24,7 @@ class Log
   const Simulation* simulation_;
   core::Stopwatch watch_;
   int lines_ = 0;
+  EnergyAccount energy_;  ///< of the last step
 };
 
 }  // namespace trocar::driver

@@ -98,10 +98,16 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                  {at + "points", 0, "1"},
                                  {at + "slipping", 0, "1"}});
   }
+  if (scenario.output.energy)
+    for (const char* name :
+         {"elastic", "kinetic", "supplied", "friction", "cutting", "damping", "rest"})
+      series.push_back({std::string("energy/") + name, 0, "J"});
   series.insert(series.end(), {{"constraint/rows", 0, "1"},
                                {"constraint/rank", 0, "1"},
                                {"constraint/iterations", 0, "1"},
                                {"constraint/residual", 0, "m"},
+                               {"constraint/outer", 0, "1"},
+                               {"constraint/contraction", 0, "1"},
                                {"constraint/smallest_gap", 0, "m"},
                                {"compliance/probes", 0, "1"},
                                {"compliance/new_probes", 0, "1"},
@@ -151,12 +157,18 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
                            {static_cast<double>(points.size())},
                            {static_cast<double>(slipping)}});
   }
+  if (simulation.scenario().output.energy) {
+    const EnergyAccount& e = state.energy;
+    for (double value :
+         {e.elastic, e.kinetic, e.supplied, e.friction, e.cutting, e.damping, e.rest()})
+      row.push_back({value});
+  }
   for (double value :
        {static_cast<double>(report.rows), static_cast<double>(report.rank),
-        static_cast<double>(report.iterations), report.residual, smallest_gap(state),
-        static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
-        static_cast<double>(report.compliance.reused), build_seconds,
-        static_cast<double>(report.linearisations), seconds})
+        static_cast<double>(report.iterations), report.residual, static_cast<double>(report.outer),
+        report.contraction, smallest_gap(state), static_cast<double>(report.compliance.probes),
+        static_cast<double>(report.compliance.built), static_cast<double>(report.compliance.reused),
+        build_seconds, static_cast<double>(report.linearisations), seconds})
     row.push_back({value});
   return row;
 }

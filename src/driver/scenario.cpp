@@ -22,6 +22,7 @@ TimeSettings read_time(Options& options)
   time.end = options.real("time_end");
   time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
   time.newton_max = options.integer("time_newton_max");
+  time.direction_max = options.integer("constraint_direction_max");
   return time;
 }
 
@@ -174,6 +175,7 @@ OutputSettings read_output(Options& options)
   output.folder = options.text("output_dir");
   output.every = options.integer("output_every");
   output.quiet = options.flag("quiet");
+  output.energy = options.flag("output_energy");
   output.displacement = false;
   const std::vector<std::string> known{"displacement", "velocity"};
   for (const std::string& field : options.names("output_fields")) {

@@ -22,7 +22,8 @@ struct TimeSettings
   double step = 0.01;  ///< h [s]
   double end = 0.0;    ///< T [s]
   bool start_in_equilibrium = false;
-  int newton_max = 1;  ///< linearisations per dynamic step
+  int newton_max = 1;     ///< linearisations per dynamic step
+  int direction_max = 1;  ///< updates of the constraint directions per linearisation
 };
 
 struct OutputSettings
@@ -31,6 +32,7 @@ struct OutputSettings
   int every = 1;
   bool displacement = true;
   bool velocity = false;
+  bool energy = false;  ///< keep the energy account
   bool quiet = false;
 };
 

@@ -75,7 +75,8 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
 {
   State next = old;
   next.t = now.t;
-  move_needles(old, next);  // 1 events, decided before and frozen during the solve
+  // 1 events, decided before and frozen during the solve
+  if (const auto trouble = move_needles(old, next)) return StepResult::rejected(*trouble);
   StepReport report;
   const int most = now.is_static ? most_linearisations : scenario_.time.newton_max;
   double residual = std::numeric_limits<double>::infinity();
@@ -87,13 +88,17 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
     report.linearisations = iteration;
     if (most == 1 || balanced(old, next, now, pass, residual)) {
       accept(pass, next, report);
+      if (scenario_.output.energy) account(old, now, pass, report, next);
       return {std::move(next), std::move(report), {}};
     }
     if (pass.rows.set.empty() && residual > last_residual)  // overshoot: half the increment
       next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.tissue.u.value);
   }
+  const std::string what = residual <= balance_tolerance
+                               ? "the gaps of the rows stay open"
+                               : "relative residual " + core::shown(residual);
   return StepResult::rejected("equilibrium not reached in " + std::to_string(most) +
-                              " linearisations (relative residual " + core::shown(residual) + ")");
+                              " linearisations (" + what + ")");
 }
 
 // The step of both papers: every body moves freely, the rows that couple them are solved in one
@@ -106,16 +111,15 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
       tissue_.free_motion(old.tissue, next.tissue.u, now);  // 2 each body alone
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
-  std::vector<needle::Linearised> needles;
-  for (std::size_t i = 0; i < needles_.size(); ++i)
-    needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
-
-  pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
-  if (!pass.rows.set.empty())            // 4 W and g from the isolated compliance, then the laws
-    pass.trouble = solve_constraints(tissue.increment, needles, pass, report);
+  const core::VecX free = next.tissue.u.value + tissue.increment.value;
+  // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
+  for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
+    const fem::OwnedField increment{free - next.tissue.u.value};
+    pass = constrained_step(old, now, increment, next, report);  // 3 to 5
+    if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
+    if (gaps_closed(now, next, pass)) break;
+  }
   if (pass.trouble) return pass;
-
-  correct(old, now, tissue.increment, needles, pass, next, report);  // 5
   if (!tissue_.possible(next.tissue.u))
     pass.trouble = "an element of the tissue would turn inside out";
   for (const needle::NeedleState& needle : next.needles)
@@ -123,16 +127,36 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
   return pass;
 }
 
-void Simulation::move_needles(const State& old, State& next) const
+Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
+                                              const fem::OwnedField& increment, State& next,
+                                              StepReport& report)
 {
-  if (needles_.empty()) return;
+  Pass pass;
+  std::vector<needle::Linearised> needles;
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
+  pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
+  if (!pass.rows.set.empty())            // 4 W and g from the isolated compliance, then the laws
+    pass.trouble = solve_constraints(increment, needles, pass, report);
+  if (!pass.trouble) correct(old, now, increment, needles, pass, next, report);  // 5
+  return pass;
+}
+
+std::optional<std::string> Simulation::move_needles(const State& old, State& next) const
+{
+  if (needles_.empty()) return std::nullopt;
   const fem::GlobalField u = space_.gather(old.tissue.u);
   const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     next.needles[i] = needles_[i].predict(old.needles[i], next.t);
-    if (next.t > 0.0)
-      next.insertions[i] = insertion_->advance(old.insertions[i], next.needles[i].shaft, tissue);
+    if (!(next.t > 0.0)) continue;
+    next.insertions[i] = insertion_->advance(old.insertions[i], next.needles[i].shaft, tissue);
+    if (insertion_->astray(next.insertions[i], next.needles[i].shaft, tissue))
+      return "needle '" + needles_[i].settings().name +
+             "': its shaft enters the tissue beside its channel (contact of shafts and surfaces is "
+             "not modelled)";
   }
+  return std::nullopt;
 }
 
 Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const State& state) const
@@ -174,6 +198,8 @@ std::optional<std::string> Simulation::solve_constraints(
   report.nonunique = pass.lambda.nonunique;
   report.iterations += pass.lambda.iterations;
   report.residual = std::max(report.residual, pass.lambda.residual);
+  report.outer = std::max(report.outer, pass.lambda.outer);
+  report.contraction = std::max(report.contraction, pass.lambda.contraction);
   report.compliance.probes = reduced.compliance.probes;
   report.compliance.built += reduced.compliance.built;
   report.compliance.reused += reduced.compliance.reused;
@@ -219,7 +245,12 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
     residual = std::max(residual, needles_[i].relative_increment(again, lever));
   }
   if (!(residual <= balance_tolerance)) return false;
-  // The rows turn with the shaft: the gaps of the new geometry must be closed as well.
+  return gaps_closed(now, next, pass);
+}
+
+// The rows turn with the shaft: the gaps of the new geometry must be closed as well.
+bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const
+{
   const Rows again = coupling_rows(now, next);
   for (int i = 0; i < again.set.size(); ++i) {
     const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];

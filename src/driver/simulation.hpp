@@ -13,6 +13,22 @@ namespace trocar::driver {
 
 using core::Vec3;
 
+/// Where the energy went [J]: what is stored at the end of a step, and sums since the start.
+/// supplied = stored - stored at the start + friction + cutting + damping + rest; the rest is what
+/// backward Euler loses and what frozen geometry leaves.
+struct EnergyAccount
+{
+  double elastic = 0.0, kinetic = 0.0;
+  double stored_at_start = 0.0;
+  double supplied = 0.0;  ///< by holders, loads and moving supports
+  double friction = 0.0, cutting = 0.0, damping = 0.0;
+
+  double rest() const
+  {
+    return supplied - (elastic + kinetic - stored_at_start) - friction - cutting - damping;
+  }
+};
+
 /// All that changes in a run. A value: a rejected step leaves no trace.
 struct State
 {
@@ -20,6 +36,7 @@ struct State
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
+  EnergyAccount energy;                               ///< kept with -output_energy only
 };
 
 /// What one needle did in a step.
@@ -37,6 +54,8 @@ struct StepReport
   std::vector<NeedleReport> needles;
   int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
   double residual = 0.0;                   ///< worst of the step [m]
+  int outer = 0;                           ///< most solves that state-dependent bounds took
+  double contraction = 0.0;                ///< worst ratio of their last two changes
   bool nonunique = false;
   solve::ComplianceReport compliance;  ///< sums over the step's linearisations
   int linearisations = 0;
@@ -106,7 +125,10 @@ class Simulation
 
   Pass linearised_step(const State& old, const core::TimeStep& now, State& next,
                        StepReport& report);
-  void move_needles(const State& old, State& next) const;
+  Pass constrained_step(const State& old, const core::TimeStep& now,
+                        const fem::OwnedField& increment, State& next, StepReport& report);
+  bool gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const;
+  std::optional<std::string> move_needles(const State& old, State& next) const;
   Rows coupling_rows(const core::TimeStep& now, const State& state) const;
   std::optional<std::string> solve_constraints(const fem::OwnedField& free_increment,
                                                const std::vector<needle::Linearised>& needles,
@@ -117,6 +139,8 @@ class Simulation
   bool balanced(const State& old, const State& next, const core::TimeStep& now, const Pass& pass,
                 double& residual) const;
   void accept(const Pass& pass, State& next, StepReport& report) const;
+  void account(const State& old, const core::TimeStep& now, const Pass& pass,
+               const StepReport& report, State& next) const;
 
   const Scenario& scenario_;
   core::Ledger ledger_;

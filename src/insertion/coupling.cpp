@@ -78,17 +78,30 @@ void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& frict
   }
 }
 
-PointRows Insertion::add_point_rows(const CouplingPoint& point, const Path& path,
+/// Which points hold the shaft laterally: all, but when they stand at a spacing along a path that
+/// is not straight, the last one of each tet and the first of all. In a tet the displacement is
+/// linear, so that more points on a curve contradict each other by little, and fight it out with
+/// huge forces.
+std::vector<bool> Insertion::lateral_points(const InsertionState& state) const
+{
+  const std::size_t count = state.points.size();
+  std::vector<bool> lateral(count, true);
+  if (settings_.placement.placement == Placement::crossings || straight(state.path)) return lateral;
+  for (std::size_t k = 1; k + 1 < count; ++k)
+    lateral[k] = state.path.sites[k].tet != state.path.sites[k + 1].tet;
+  return lateral;
+}
+
+PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
                                     const Friction& friction, const needle::Shaft& shaft,
                                     const Deformed& tissue, int body, double h,
                                     constraint::Set& set) const
 {
   PointRows mine;
-  mine.first = set.size();
   constraint::Row row;
   row.anchor = path.sites[static_cast<std::size_t>(point.site)].anchor;
   row.body = body;
-  row.point = mine.first;
+  row.point = set.size();
   const Vec3 p = tissue.position(row.anchor);
   const needle::ShaftPoint on_shaft = needle::project(shaft, p);
   const auto aim = [&](const Vec3& direction, double start) {
@@ -97,10 +110,13 @@ PointRows Insertion::add_point_rows(const CouplingPoint& point, const Path& path
     row.lever = needle::lever(shaft, on_shaft.s, direction);
     row.start = start;
   };
-  aim(on_shaft.normal_1, point.lambda[0]);
-  set.add(row);
-  aim(on_shaft.normal_2, point.lambda[1]);
-  set.add(row);
+  if (lateral) {
+    mine.first = set.size();
+    aim(on_shaft.normal_1, point.lambda[0]);
+    set.add(row);
+    aim(on_shaft.normal_2, point.lambda[1]);
+    set.add(row);
+  }
   aim(on_shaft.tangent, point.lambda[2]);
   row.gap = mine.slid = on_shaft.s - point.needle_arc;
   add_axial_rows(point, friction, h, row, mine, set);
@@ -113,8 +129,9 @@ CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaf
 {
   CouplingRows rows;
   const core::MatX tributary = tributary_lengths(state);
+  const std::vector<bool> lateral = lateral_points(state);
   for (std::size_t k = 0; k < state.points.size(); ++k)
-    rows.points.push_back(add_point_rows(state.points[k], state.path,
+    rows.points.push_back(add_point_rows(state.points[k], lateral[k], state.path,
                                          friction_of(state, tributary, k), shaft, tissue, body, h,
                                          set));
   if (state.tip.pressed)
@@ -127,7 +144,7 @@ void Insertion::accept_point(CouplingPoint& point, const PointRows& rows,
                              const law::Multipliers& multipliers, CouplingReport& report) const
 {
   point.lambda.setZero();
-  point.lambda.head<2>() = multipliers.lambda.segment<2>(rows.first);
+  if (rows.first >= 0) point.lambda.head<2>() = multipliers.lambda.segment<2>(rows.first);
   for (int row : {rows.axial, rows.viscous}) {
     if (row < 0) continue;
     point.lambda[2] += multipliers.lambda[row];

@@ -110,6 +110,18 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
   return next;
 }
 
+bool Insertion::astray(const InsertionState& state, const needle::Shaft& shaft,
+                       const Deformed& tissue) const
+{
+  if (state.phase == Phase::contact || state.phase == Phase::inserted) return false;
+  for (std::size_t e = 0; e + 1 < shaft.x.size(); ++e) {
+    // The tip itself may touch the surface.
+    const double end = e + 2 == shaft.x.size() ? 0.99 : 1.0;
+    if (tissue.meets(shaft.x[e], shaft.x[e] + end * (shaft.x[e + 1] - shaft.x[e]))) return true;
+  }
+  return false;
+}
+
 InsertionState Insertion::enter(const InsertionState& old, const needle::Shaft& predicted,
                                 const Deformed& tissue) const
 {

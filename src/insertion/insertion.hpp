@@ -67,7 +67,7 @@ struct InsertionSettings
 /// Which rows a coupling point got in a set, and where it was on the shaft.
 struct PointRows
 {
-  int first = 0;       ///< first of two lateral rows
+  int first = -1;      ///< first of two lateral rows, -1 when there is none
   int axial = -1;      ///< row of the box (or η) law, -1 when there is none
   int viscous = -1;    ///< row of the dashpot, -1 when there is none
   double bound = 0.0;  ///< F of the box row [N]
@@ -109,6 +109,11 @@ class Insertion
   InsertionState advance(const InsertionState& old, const needle::Shaft& predicted,
                          const Deformed& tissue) const;
 
+  /// True when a needle that is not in its channel lies in the tissue all the same: its shaft went
+  /// in from the side, which nothing here models.
+  bool astray(const InsertionState& state, const needle::Shaft& shaft,
+              const Deformed& tissue) const;
+
   /// Adds this needle's rows at the iterate (deformed tissue and shaft); `body` is its index among
   /// the small bodies, `h` the step length [s], 0 when no time passes: dashpots are then absent.
   CouplingRows add_rows(const InsertionState& state, const needle::Shaft& shaft,
@@ -141,9 +146,10 @@ class Insertion
   Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;
-  PointRows add_point_rows(const CouplingPoint& point, const Path& path, const Friction& friction,
-                           const needle::Shaft& shaft, const Deformed& tissue, int body, double h,
-                           constraint::Set& set) const;
+  std::vector<bool> lateral_points(const InsertionState& state) const;
+  PointRows add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
+                           const Friction& friction, const needle::Shaft& shaft,
+                           const Deformed& tissue, int body, double h, constraint::Set& set) const;
   void add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
                       constraint::Row row, PointRows& mine, constraint::Set& set) const;
   void accept_point(CouplingPoint& point, const PointRows& rows,

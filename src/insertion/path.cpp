@@ -155,6 +155,15 @@ double tissue_length(const Path& path, double arc)
   return length;
 }
 
+bool straight(const Path& path)
+{
+  if (path.vertex.size() < 3) return true;
+  const Vec3 chord = (path.vertex.back() - path.vertex.front()).normalized();
+  return std::all_of(path.vertex.begin(), path.vertex.end(), [&](const Vec3& X) {
+    return (X - path.vertex.front()).cross(chord).norm() <= 1e-9 * path.length();
+  });
+}
+
 double arc_nearest(const Path& path, const Vec3& X)
 {
   double best = std::numeric_limits<double>::infinity();

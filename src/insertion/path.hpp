@@ -60,6 +60,9 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
 /// Length of the path up to `arc` that lies in tissue [m].
 double tissue_length(const Path& path, double arc);
 
+/// True when all vertices lie on one line, to 1e-9 of the length.
+bool straight(const Path& path);
+
 /// Arc length of the point of the path nearest to X; the first and last segments go on beyond
 /// their ends, so that the result may be negative or more than the length.
 double arc_nearest(const Path& path, const Vec3& X);

@@ -66,12 +66,9 @@ Multipliers solve_condensed(const Problem& problem, const Settings& settings)
 
 VecX mobility(const Problem& problem)
 {
-  VecX w = problem.W.diagonal();
-  if (w.size() == 0) return w;
-  const double smallest = 1e-14 * w.maxCoeff();
-  for (double& value : w)
-    if (value <= smallest) value = 0.0;
-  return w;
+  // What is prescribed has columns that are exactly zero. A relative cut would also take rows of
+  // stiff bodies beside very soft ones.
+  return problem.W.diagonal().cwiseMax(0.0);
 }
 
 namespace {

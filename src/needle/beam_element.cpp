@@ -73,7 +73,7 @@ BeamForce corotational_beam(const Mat12& local, double length, const EndPose& a,
   Mat12 turn = Mat12::Zero();
   for (int k = 0; k < 4; ++k) turn.block<3, 3>(3 * k, 3 * k) = frame;
   const Vec12 force = local * u;
-  BeamForce result{turn * force, turn * local * turn.transpose()};
+  BeamForce result{turn * force, turn * local * turn.transpose(), 0.5 * u.dot(force)};
   if (const double tension = force[6]; tension > 0.0) {
     const Mat3 across = tension / l * (Mat3::Identity() - frame.col(0) * frame.col(0).transpose());
     for (const auto& [i, j, sign] :

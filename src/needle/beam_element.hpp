@@ -42,6 +42,7 @@ struct BeamForce
 {
   Vec12 force;
   Mat12 tangent;
+  double energy;  ///< [J]
 };
 /// `local` is `beam_stiffness`; frames are relative to a rest frame whose first column lies along
 /// the element.

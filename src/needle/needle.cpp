@@ -143,6 +143,24 @@ double Needle::relative_increment(const Linearised& linear, const VecX& coupling
   return largest;
 }
 
+Energy Needle::energy(const NeedleState& old, const NeedleState& next) const
+{
+  Energy energy;
+  const Shaft& shaft = next.shaft;
+  for (int i = 0; i <= settings_.elements; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    energy.kinetic += 0.5 * (nodal_mass(i) * next.v[n].squaredNorm() +
+                             next.w[n].dot(rotary_inertia(i, shaft.R[n]) * next.w[n]));
+    energy.weight += nodal_mass(i) * settings_.gravity.dot(shaft.x[n] - old.shaft.x[n]);
+  }
+  if (settings_.model == Model::rigid) return energy;
+  for (std::size_t e = 0; e + 1 < shaft.x.size(); ++e)
+    energy.elastic += corotational_beam(element_stiffness_, shaft.element_length(),
+                                        {shaft.x[e], shaft.R[e]}, {shaft.x[e + 1], shaft.R[e + 1]})
+                          .energy;
+  return energy;
+}
+
 Wrench Needle::base_wrench(const NeedleState& iterate, const Linearised& linear,
                            const VecX& coupling) const
 {

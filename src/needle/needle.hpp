@@ -48,6 +48,12 @@ struct Linearised
   VecX free_increment;                            ///< A⁻¹ r on the free dofs
 };
 
+/// Energies of a needle, and the work of its weight from one state to the next [J].
+struct Energy
+{
+  double elastic = 0.0, kinetic = 0.0, weight = 0.0;
+};
+
 /// What the holder puts on the needle at its base, world axes, moment about the base.
 struct Wrench
 {
@@ -79,6 +85,8 @@ class Needle
   /// The holder's wrench in the linearised balance that `correct` satisfies.
   Wrench base_wrench(const NeedleState& iterate, const Linearised& linear,
                      const VecX& coupling) const;
+
+  Energy energy(const NeedleState& old, const NeedleState& next) const;
 
  private:
   VecX increment(const Linearised& linear, const VecX& coupling) const;

@@ -30,13 +30,25 @@ inline Mat3 nodal_gradient(const fem::TetShape& shape, const Eigen::Matrix<doubl
   return nodal * shape.gradient.transpose();
 }
 
+/// e = sym(RᵀF) - I.
+inline Mat3 corotational_strain(const Mat3& R, const Mat3& F)
+{
+  const Mat3 stretch = R.transpose() * F;
+  return 0.5 * (stretch + stretch.transpose()) - Mat3::Identity();
+}
+
+/// 2μ|e|² + λ tr(e)² [Pa]: twice the energy density of the strain e.
+inline double strain_square(const Material& m, const Mat3& e)
+{
+  return 2.0 * m.mu() * e.squaredNorm() + m.lambda() * e.trace() * e.trace();
+}
+
 /// Corotational first Piola stress P = R (2μ e + λ tr(e) I) [Pa], e = sym(RᵀF) - I, with stiffness
 /// damping folded in: e gains β sym(Rᵀ dF/dt). R = I gives linear elasticity (Felippa 2000).
 /// The exact derivative of the energy V (μ|e|² + λ/2 tr(e)²) when R is the polar rotation of F.
 inline Mat3 stress(const Material& m, const Mat3& R, const Mat3& F, const Mat3& F_rate)
 {
-  const Mat3 stretch = R.transpose() * (F + m.rayleigh_stiffness * F_rate);
-  const Mat3 e = 0.5 * (stretch + stretch.transpose()) - Mat3::Identity();
+  const Mat3 e = corotational_strain(R, F + m.rayleigh_stiffness * F_rate);
   return R * (2.0 * m.mu() * e + m.lambda() * e.trace() * Mat3::Identity());
 }
 

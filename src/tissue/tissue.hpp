@@ -43,6 +43,14 @@ struct FreeMotion
   std::optional<std::string> trouble;  ///< why the step cannot be taken; equal on all ranks
 };
 
+/// Energies at the end of a step and what went in and was lost in it [J].
+struct Work
+{
+  double elastic = 0.0, kinetic = 0.0;
+  double supplied = 0.0;  ///< by gravity, tractions and moving supports
+  double damped = 0.0;    ///< by Rayleigh damping
+};
+
 /// The deformable bodies: one or more volumes of the mesh in one operator
 ///   A = M/h² + B/h + K,  B = αM + βK   (static: A = K)    [N/m].
 class Tissue
@@ -71,6 +79,11 @@ class Tissue
   /// in balance although its round-off is as large as its forces. Collective.
   OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
                       double& scale) const;
+
+  /// Energy account of an accepted step; `push` is Hᵀλ. Only on request: an element loop more.
+  /// Collective.
+  Work work(const TissueState& old, const TissueState& next, const TimeStep& step,
+            const OwnedField& push) const;
 
   /// The compliance that belongs to the operator of the last `free_motion`.
   solve::IsolatedCompliance& compliance() { return *current_->compliance; }
