@@ -163,6 +163,7 @@ std::optional<std::string> Simulation::solve_constraints(
   pass.lambda = law::solve(reduced.problem, scenario_.laws);
   ++ledger_.constraint_solves;
   if (!pass.lambda.converged) return pass.lambda.why;
+  law::compare(reduced.problem, scenario_.compare, report.trials);
 
   pass.mobility = law::mobility(reduced.problem);
   pass.push = constraint::tissue_forces(set, pass.lambda.lambda, space_);

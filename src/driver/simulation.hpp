@@ -38,6 +38,7 @@ struct StepReport
   int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
   double residual = 0.0;                   ///< worst of the step [m]
   bool nonunique = false;
+  std::vector<law::Trial> trials;      ///< of the solvers compared
   solve::ComplianceReport compliance;  ///< sums over the step's linearisations
   int linearisations = 0;
 };
