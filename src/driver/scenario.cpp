@@ -187,12 +187,8 @@ law::Contender read_contender(const std::string& entry, const law::Settings& law
 std::vector<law::Contender> read_compare(Options& options, const law::Settings& laws)
 {
   std::vector<law::Contender> contenders;
-  std::set<std::string> entries;
-  for (const std::string& entry : options.names("constraint_compare")) {
-    if (!entries.insert(entry).second)
-      throw core::option_error("option -constraint_compare: '" + entry + "' is there twice");
+  for (const std::string& entry : options.names("constraint_compare"))
     contenders.push_back(read_contender(entry, laws));
-  }
   return contenders;
 }
 
