@@ -184,6 +184,10 @@ std::vector<OptionSpec> build_table()
             "all gaps are closed; 1 freezes them as in the papers"),
       choice("constraint_norm", "residual", {"residual", "step"},
              "what pgs and hybrid stop on: the true residual, or the paper's step norm"),
+      list(
+          "constraint_compare",
+          "solvers to be timed on every constraint problem beside the one of the run, for studies: "
+          "METHOD[:NORM[:TOLERANCE]],…"),
       choice("compliance_provider", "auto", {"auto", "ksp", "ksp_block"},
              "columns of the isolated compliance: one KSP solve each, or in blocks; auto takes "
              "ksp when a tissue_ksp or tissue_pc option is given"),

@@ -106,10 +106,18 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                {"constraint/rank", 0, "1"},
                                {"constraint/iterations", 0, "1"},
                                {"constraint/residual", 0, "m"},
+                               {"constraint/condition", 0, "1"},
                                {"constraint/outer", 0, "1"},
                                {"constraint/contraction", 0, "1"},
-                               {"constraint/smallest_gap", 0, "m"},
-                               {"compliance/probes", 0, "1"},
+                               {"constraint/smallest_gap", 0, "m"}});
+  for (const law::Contender& contender : scenario.compare) {
+    const std::string at = "constraint/compare/" + contender.name + "/";
+    series.insert(series.end(), {{at + "iterations", 0, "1"},
+                                 {at + "residual", 0, "m"},
+                                 {at + "seconds", 0, "s"},
+                                 {at + "factor_seconds", 0, "s"}});
+  }
+  series.insert(series.end(), {{"compliance/probes", 0, "1"},
                                {"compliance/new_probes", 0, "1"},
                                {"compliance/reused_probes", 0, "1"},
                                {"compliance/build_seconds", 0, "s"},
@@ -163,12 +171,20 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
          {e.elastic, e.kinetic, e.supplied, e.friction, e.cutting, e.damping, e.rest()})
       row.push_back({value});
   }
+  for (double value : {static_cast<double>(report.rows), static_cast<double>(report.rank),
+                       static_cast<double>(report.iterations), report.residual, report.condition,
+                       static_cast<double>(report.outer), report.contraction, smallest_gap(state)})
+    row.push_back({value});
+  for (std::size_t i = 0; i < simulation.scenario().compare.size(); ++i) {
+    const law::Trial trial = report.trials.empty() ? law::Trial{} : report.trials[i];
+    for (double value : {static_cast<double>(trial.iterations), trial.residual, trial.seconds,
+                         trial.factor_seconds})
+      row.push_back({value});
+  }
   for (double value :
-       {static_cast<double>(report.rows), static_cast<double>(report.rank),
-        static_cast<double>(report.iterations), report.residual, static_cast<double>(report.outer),
-        report.contraction, smallest_gap(state), static_cast<double>(report.compliance.probes),
-        static_cast<double>(report.compliance.built), static_cast<double>(report.compliance.reused),
-        build_seconds, static_cast<double>(report.linearisations), seconds})
+       {static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
+        static_cast<double>(report.compliance.reused), build_seconds,
+        static_cast<double>(report.linearisations), seconds})
     row.push_back({value});
   return row;
 }

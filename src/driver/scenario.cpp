@@ -1,6 +1,7 @@
 #include "driver/scenario.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "core/csv.hpp"
 #include "core/words.hpp"
@@ -154,19 +155,52 @@ insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& 
   return settings;
 }
 
+const std::map<std::string, law::Method> methods{{"auto", law::Method::automatic},
+                                                 {"pgs", law::Method::pgs},
+                                                 {"hybrid", law::Method::hybrid},
+                                                 {"active_set", law::Method::active_set},
+                                                 {"interior_point", law::Method::interior_point}};
+
 law::Settings read_laws(Options& options)
 {
-  const std::map<std::string, law::Method> methods{{"auto", law::Method::automatic},
-                                                   {"pgs", law::Method::pgs},
-                                                   {"hybrid", law::Method::hybrid},
-                                                   {"active_set", law::Method::active_set},
-                                                   {"interior_point", law::Method::interior_point}};
   law::Settings laws;
   laws.method = methods.at(options.text("constraint_solver"));
   laws.norm = options.text("constraint_norm") == "step" ? law::Norm::step : law::Norm::residual;
   laws.tolerance = options.real("constraint_tolerance");
   laws.max_iterations = options.integer("constraint_max_iterations");
   return laws;
+}
+
+/// METHOD[:NORM[:TOLERANCE]]; what is left out is as for the solver of the run.
+law::Contender read_contender(const std::string& entry, const law::Settings& laws)
+{
+  const std::vector<std::string> words = core::split(entry, ':');
+  law::Contender contender{entry, laws};
+  const auto bad = [&](const std::string& why) {
+    return core::option_error("option -constraint_compare: '" + entry + "': " + why);
+  };
+  const auto method = words.empty() ? methods.end() : methods.find(words[0]);
+  if (method == methods.end()) throw bad("no such solver");
+  contender.settings.method = method->second;
+  if (words.size() > 1) {
+    if (words[1] != "step" && words[1] != "residual") throw bad("the norm is residual or step");
+    contender.settings.norm = words[1] == "step" ? law::Norm::step : law::Norm::residual;
+  }
+  if (words.size() > 2) {
+    std::istringstream text(words[2]);
+    if (!(text >> contender.settings.tolerance) || !text.eof() ||
+        !(contender.settings.tolerance > 0.0) || words.size() > 3)
+      throw bad("the tolerance is a positive number [m]");
+  }
+  return contender;
+}
+
+std::vector<law::Contender> read_compare(Options& options, const law::Settings& laws)
+{
+  std::vector<law::Contender> contenders;
+  for (const std::string& entry : options.names("constraint_compare"))
+    contenders.push_back(read_contender(entry, laws));
+  return contenders;
 }
 
 OutputSettings read_output(Options& options)
@@ -213,6 +247,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   Scenario scenario;
   scenario.time = read_time(options);
   scenario.laws = read_laws(options);
+  scenario.compare = read_compare(options, scenario.laws);
   scenario.output = read_output(options);
   scenario.check_only = options.flag("check");
   const std::string file = options.text("mesh");

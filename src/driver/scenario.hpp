@@ -7,7 +7,7 @@
 #include "base/comm.hpp"
 #include "core/options.hpp"
 #include "insertion/insertion.hpp"
-#include "law/problem.hpp"
+#include "law/compare.hpp"
 #include "mesh/mesh.hpp"
 #include "needle/needle.hpp"
 #include "tissue/tissue.hpp"
@@ -46,6 +46,7 @@ struct Scenario
   std::vector<needle::NeedleSettings> needles;
   insertion::InsertionSettings insertion;
   law::Settings laws;
+  std::vector<law::Contender> compare;  ///< solvers to be timed beside it
   OutputSettings output;
   bool check_only = false;
   std::vector<std::string> warnings;  ///< for the log

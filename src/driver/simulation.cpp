@@ -187,6 +187,7 @@ std::optional<std::string> Simulation::solve_constraints(
   pass.lambda = law::solve(reduced.problem, scenario_.laws);
   ++ledger_.constraint_solves;
   if (!pass.lambda.converged) return pass.lambda.why;
+  law::compare(reduced.problem, scenario_.compare, report.trials);
 
   pass.mobility = law::mobility(reduced.problem);
   pass.push = constraint::tissue_forces(set, pass.lambda.lambda, space_);
@@ -195,6 +196,7 @@ std::optional<std::string> Simulation::solve_constraints(
         constraint::body_forces(set, pass.lambda.lambda, static_cast<int>(i), needles_[i].dofs()));
   report.rows = set.size();
   report.rank = pass.lambda.rank;
+  report.condition = pass.lambda.condition;
   report.nonunique = pass.lambda.nonunique;
   report.iterations += pass.lambda.iterations;
   report.residual = std::max(report.residual, pass.lambda.residual);

@@ -54,9 +54,11 @@ struct StepReport
   std::vector<NeedleReport> needles;
   int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
   double residual = 0.0;                   ///< worst of the step [m]
+  double condition = 0.0;                  ///< see law::Multipliers
   int outer = 0;                           ///< most solves that state-dependent bounds took
   double contraction = 0.0;                ///< worst ratio of their last two changes
   bool nonunique = false;
+  std::vector<law::Trial> trials;      ///< of the solvers compared
   solve::ComplianceReport compliance;  ///< sums over the step's linearisations
   int linearisations = 0;
 };

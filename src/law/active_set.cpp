@@ -21,9 +21,8 @@ VecX minimise_free(const MatX& S, const VecX& s, const VecX& x, const std::vecto
   const MatX S_ff = S(free, free);
   VecX y = x;
   const Eigen::LLT<MatX> cholesky(S_ff);
-  if (cholesky.info() == Eigen::Success)
-    y(free) = cholesky.solve(rhs).eval();
-  else
+  if (cholesky.info() == Eigen::Success) y(free) = cholesky.solve(rhs).eval();
+  if (cholesky.info() != Eigen::Success || !y.allFinite())
     y(free) = S_ff.completeOrthogonalDecomposition().solve(rhs).eval();
   return y;
 }
@@ -36,8 +35,8 @@ struct Walk
   bool cautious = false;  ///< single changes only, after a set failed to lower the energy
 };
 
-/// Goes from x towards the free minimiser y, which leaves the box.
-void stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, Walk& walk)
+/// Goes from x towards the free minimiser y, which leaves the box; false when it is not a number.
+bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, Walk& walk)
 {
   double fraction = std::numeric_limits<double>::infinity();
   int first = -1;
@@ -50,6 +49,7 @@ void stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, 
       first = i;
     }
   }
+  if (first < 0) return false;
   VecX met = walk.x + fraction * (y - walk.x);
   met[first] = y[first] > walk.x[first] ? F[first] : -F[first];
   const VecX projected = y.cwiseMax(-F).cwiseMin(F);
@@ -61,6 +61,7 @@ void stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, 
     walk.x = met;
     walk.free[static_cast<std::size_t>(first)] = false;
   }
+  return true;
 }
 
 /// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal.
@@ -109,7 +110,7 @@ BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& 
       bool leaves = false;
       for (int i : free) leaves = leaves || std::abs(y[i]) > F[i];
       if (leaves) {
-        stop_at_bounds(S, s, F, y, walk);
+        if (!stop_at_bounds(S, s, F, y, walk)) break;
         continue;
       }
       walk.x = y;

@@ -12,6 +12,15 @@ struct BoxSolution
   bool finished = false;  ///< the method came to its own end; the caller judges the residual
 };
 
+/// Newton's iteration on the sets (primal-dual active set): every iteration minimises over the free
+/// rows, then rows outside the box go on it and rows pulled inwards are released, all at once. From
+/// good sets it needs one or two factorisations; from bad ones it may cycle, so callers give it few
+/// and have another method behind it. S may be singular: a shift towards the start (proximal
+/// point) makes the minimum unique, so small that the gradient it leaves is at most
+/// `tolerance` / 5 [m]; what a regular S determines is exact. `x` is the start when not finished.
+BoxSolution set_newton(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
+                       double tolerance, int max_iterations);
+
 /// Monotone active set for S positive definite: every iteration minimises over the free rows;
 /// rows that leave the box stop at it (all at once while that lowers the energy, else the first
 /// one met), rows with a multiplier of the wrong sign are released (all at once while the energy
@@ -19,9 +28,13 @@ struct BoxSolution
 BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
                        int max_iterations);
 
-/// Primal-dual interior point with Mehrotra's corrector; indifferent to a singular S. Scaled, so
-/// that `tolerance` is relative to the largest gap or S F.
-BoxSolution interior_point(const MatX& S, const VecX& s, const VecX& F, double tolerance,
-                           int max_iterations);
+/// Primal-dual interior point with Mehrotra's corrector from a start drawn into the box;
+/// indifferent to a singular S. Rows that tend to a bound are put on it; ends when the box residual
+/// of that is below `tolerance` [m].
+BoxSolution interior_point(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
+                           double tolerance, int max_iterations);
+
+/// Largest S_ii |x_i - clip(x_i - (S x + s)_i / S_ii, ±F_i)| [m].
+double box_residual(const MatX& S, const VecX& s, const VecX& F, const VecX& x);
 
 }  // namespace trocar::law

@@ -1,8 +1,14 @@
 #include "law/condensed.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trocar::law {
+namespace {
+
+constexpr double near_bound = 0.8;  ///< a start beyond this part of its bound counts as slipping
+
+}  // namespace
 
 RowSplit split_rows(const Problem& problem)
 {
@@ -23,45 +29,92 @@ MatX pseudo_inverse(const MatX& matrix, double cut)
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-Condensed::Condensed(const Problem& problem) : problem_(&problem), rows_(split_rows(problem))
+Condensed::Condensed(const Problem& problem)
+    : problem_(&problem),
+      rows_(split_rows(problem)),
+      W_bb_(problem.W(rows_.bilateral, rows_.bilateral)),
+      bound_(problem.bound(rows_.box)),
+      start_(problem.start(rows_.box))
 {
-  const RankReveal reveal = reveal_rank(problem.W(rows_.bilateral, rows_.bilateral));
-  bilateral_rank_ = reveal.rank;
-  redundant_ = reveal.rank < static_cast<int>(rows_.bilateral.size());
-  for (int row : reveal.rows) kept_.push_back(rows_.bilateral[static_cast<std::size_t>(row)]);
-  S_ = problem.W(rows_.box, rows_.box);
-  s_ = problem.g(rows_.box);
-  if (!kept_.empty()) {
-    W_kept_.compute(problem.W(kept_, kept_));
-    const MatX W_bf = problem.W(kept_, rows_.box);
-    const MatX Z = W_kept_.solve(W_bf);
-    S_ -= W_bf.transpose() * Z;
-    S_ = 0.5 * (S_ + S_.transpose()).eval();
-    s_ -= Z.transpose() * problem.g(kept_);
-  }
-  bound_ = problem.bound(rows_.box);
-  if (!rows_.box.empty()) box_scale_ = problem.W.diagonal()(rows_.box).maxCoeff();
-  start_ = problem.start(rows_.box).cwiseMax(-bound_).cwiseMin(bound_);
+  for (int row : W_bb_.kept()) kept_.push_back(rows_.bilateral[static_cast<std::size_t>(row)]);
+  for (Eigen::Index i = 0; i < start_.size(); ++i)
+    if (std::abs(start_[i]) >= near_bound * bound_[i])
+      start_[i] = std::copysign(bound_[i], start_[i]);
 }
 
-VecX Condensed::bilateral(const VecX& lambda_f) const
+bool Condensed::bilateral_redundant() const
 {
-  const VecX rhs = -(problem_->g(kept_) + problem_->W(kept_, rows_.box) * lambda_f);
-  VecX lambda = W_kept_.solve(rhs);
+  return kept_.size() < rows_.bilateral.size();
+}
+
+void Condensed::eliminate()
+{
+  if (S_.size() > 0) return;
+  S_ = problem_->W(rows_.box, rows_.box);
+  s_ = problem_->g(rows_.box);
+  if (kept_.empty()) return;
+  const MatX Y = W_bb_.half_solve(problem_->W(kept_, rows_.box));
+  S_.noalias() -= Y.transpose() * Y;
+  s_ -= Y.transpose() * W_bb_.half_solve(problem_->g(kept_));
+}
+
+const MatX& Condensed::S()
+{
+  eliminate();
+  return S_;
+}
+
+const VecX& Condensed::s()
+{
+  eliminate();
+  return s_;
+}
+
+int Condensed::box_rank()
+{
+  if (rows_.box.empty()) return 0;
+  return PivotedCholesky(S(), problem_->W.diagonal()(rows_.box).maxCoeff()).rank();
+}
+
+std::optional<VecX> Condensed::all_slipping() const
+{
+  const auto at_bound = (start_.cwiseAbs().array() >= bound_.array()).count();
+  if (2 * at_bound < start_.size()) return std::nullopt;
+  VecX lambda_f = start_, delta;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    with_kept_rows(lambda_f, delta);
+    bool settled = true;
+    for (Eigen::Index i = 0; i < lambda_f.size(); ++i) {
+      const double slip = -std::copysign(bound_[i], delta[rows_.box[static_cast<std::size_t>(i)]]);
+      settled = settled && slip == lambda_f[i];
+      lambda_f[i] = slip;
+    }
+    if (settled) return lambda_f;
+  }
+  return std::nullopt;
+}
+
+/// All multipliers, zero on redundant rows, and their δ.
+VecX Condensed::with_kept_rows(const VecX& lambda_f, VecX& delta) const
+{
+  VecX lambda = VecX::Zero(problem_->rows());
+  lambda(rows_.box) = lambda_f;
+  delta = problem_->W * lambda + problem_->g;
   // One step of iterative refinement: W_bb of raw crossings has condition numbers up to 1e9.
-  lambda += W_kept_.solve(rhs - problem_->W(kept_, kept_) * lambda);
+  for (int k = 0; k < 2 && !kept_.empty(); ++k) {
+    lambda(kept_) -= W_bb_.solve(delta(kept_));
+    delta = problem_->W * lambda + problem_->g;
+  }
   return lambda;
 }
 
 VecX Condensed::expand(const VecX& lambda_f) const
 {
-  VecX lambda = VecX::Zero(problem_->rows());
-  lambda(rows_.box) = lambda_f;
-  if (!kept_.empty()) lambda(kept_) = bilateral(lambda_f);
-  if (!redundant_) return lambda;
-  const MatX W_bb = problem_->W(rows_.bilateral, rows_.bilateral);
+  VecX delta;
+  const VecX lambda = with_kept_rows(lambda_f, delta);
+  if (!bilateral_redundant()) return lambda;
   VecX least = lambda;
-  least(rows_.bilateral) = pseudo_inverse(W_bb, 1e-10) * (W_bb * lambda(rows_.bilateral));
+  least(rows_.bilateral) = W_bb_.onto_range(lambda(rows_.bilateral));
   const double accurate = std::max(2.0 * kkt_residual(*problem_, lambda), 1e-12);
   return kkt_residual(*problem_, least) <= accurate ? least : lambda;
 }

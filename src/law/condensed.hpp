@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "law/pivoted_cholesky.hpp"
 #include "law/problem.hpp"
 
 namespace trocar::law {
@@ -23,33 +25,40 @@ MatX pseudo_inverse(const MatX& matrix, double cut);
 class Condensed
 {
  public:
+  /// Factors W_bb. S is made when it is first asked for: where every point slips nobody does.
   explicit Condensed(const Problem& problem);
 
-  const MatX& S() const { return S_; }          ///< [m/N]
-  const VecX& s() const { return s_; }          ///< [m]
+  const MatX& S();                              ///< [m/N]
+  const VecX& s();                              ///< [m]
   const VecX& bound() const { return bound_; }  ///< [N]
-  VecX start() const { return start_; }         ///< box multipliers to start from [N]
+  /// Box multipliers to start from: the problem's own, those near a bound put on it, because a
+  /// slipping point's bound may grow from step to step [N].
+  const VecX& start() const { return start_; }
+  int box_rows() const { return static_cast<int>(rows_.box.size()); }
   /// Rank of S, measured against the W_ff it was made from.
-  int box_rank() const { return reveal_rank(S_, box_scale_).rank; }
-  int bilateral_rank() const { return bilateral_rank_; }
-  bool bilateral_redundant() const { return redundant_; }
+  int box_rank();
+  int bilateral_rank() const { return W_bb_.rank(); }
+  bool bilateral_redundant() const;
+  double bilateral_condition() const { return W_bb_.condition(); }
+
+  /// Box multipliers when all of these rows slip, found from the start by solves with W_bb alone;
+  /// nothing when one sticks, or the way they slip does not settle at once.
+  std::optional<VecX> all_slipping() const;
 
   /// All multipliers for given box multipliers. Of redundant bilateral rows the least-norm
   /// representative is returned when it is as accurate.
   VecX expand(const VecX& lambda_f) const;
 
  private:
-  VecX bilateral(const VecX& lambda_f) const;
+  void eliminate();
+  VecX with_kept_rows(const VecX& lambda_f, VecX& delta) const;
 
   const Problem* problem_;
   RowSplit rows_;
+  PivotedCholesky W_bb_;
   std::vector<int> kept_;  ///< bilateral rows of full rank
-  Eigen::LLT<MatX> W_kept_;
-  MatX S_;
+  MatX S_;                 ///< empty until asked for
   VecX s_, bound_, start_;
-  double box_scale_ = 0.0;  ///< largest diagonal entry of W_ff [m/N]
-  int bilateral_rank_ = 0;
-  bool redundant_ = false;
 };
 
 }  // namespace trocar::law

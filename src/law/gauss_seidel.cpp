@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stopwatch.hpp"
 #include "core/words.hpp"
 #include "law/condensed.hpp"
 
@@ -69,7 +70,7 @@ bool stop(const Problem& problem, const Settings& settings, double step, Multipl
 void finish(const Problem& problem, const Settings& settings, const char* name, Multipliers& result)
 {
   result.residual = kkt_residual(problem, result.lambda);
-  result.rank = reveal_rank(problem.W).rank;
+  result.rank = PivotedCholesky(problem.W).rank();
   result.nonunique = result.rank < problem.rows();
   if (!result.converged)
     result.why = std::string(name) + " did not converge in " +
@@ -84,6 +85,7 @@ Multipliers solve_pgs(const Problem& problem, const Settings& settings)
   Multipliers result;
   result.lambda = problem.start;
   const std::vector<Group> groups = groups_of(problem);
+  const core::Stopwatch watch;
   VecX delta = problem.W * result.lambda + problem.g;
   while (!result.converged && result.iterations < settings.max_iterations) {
     ++result.iterations;
@@ -98,6 +100,7 @@ Multipliers solve_pgs(const Problem& problem, const Settings& settings)
     }
     result.converged = stop(problem, settings, step, result);
   }
+  result.seconds = watch.seconds();
   finish(problem, settings, "pgs", result);
   return result;
 }
@@ -107,7 +110,10 @@ Multipliers solve_hybrid(const Problem& problem, const Settings& settings)
   Multipliers result;
   result.lambda = problem.start;
   const RowSplit rows = split_rows(problem);
+  core::Stopwatch watch;
   const MatX inverse = pseudo_inverse(problem.W(rows.bilateral, rows.bilateral), 1e-10);
+  result.factor_seconds = watch.seconds();
+  watch = {};
   const MatX W_fb = problem.W(rows.box, rows.bilateral);
   const MatX W_ff = problem.W(rows.box, rows.box);
   const VecX g_b = problem.g(rows.bilateral), g_f = problem.g(rows.box);
@@ -132,6 +138,7 @@ Multipliers solve_hybrid(const Problem& problem, const Settings& settings)
     result.lambda(rows.box) = lambda_f;
     result.converged = stop(problem, settings, step, result);
   }
+  result.seconds = watch.seconds();
   finish(problem, settings, "hybrid", result);
   return result;
 }

@@ -56,42 +56,102 @@ void move(Point& p, const Point& d, double step)
   p.z += step * d.z;
 }
 
+/// S with the curvature of both barriers.
+MatX barrier(const MatX& S, const Point& p)
+{
+  MatX shifted = S;
+  shifted.diagonal() += p.y.cwiseQuotient(p.u) + p.z.cwiseQuotient(p.v);
+  return shifted;
+}
+
+/// Mehrotra: how far the affine step gets says how much to centre, and what it leaves is corrected.
+Point corrected_direction(const Eigen::LLT<MatX>& factor, const Point& p, const VecX& dual)
+{
+  const VecX zero = VecX::Zero(p.x.size());
+  const Point affine = direction(factor, p, dual, zero, zero);
+  Point trial = p;
+  move(trial, affine, longest_step(p, affine));
+  const double mu = complementarity(p);
+  const double centre = mu * std::pow(complementarity(trial) / mu, 3);
+  return direction(factor, p, dual, centre - affine.x.cwiseProduct(affine.y).array(),
+                   centre + affine.x.cwiseProduct(affine.z).array());
+}
+
+/// Moves as far as keeps every product from running ahead of the others: without this the step
+/// may cycle between two corners.
+void move_centred(Point& p, const Point& d)
+{
+  constexpr double neighbourhood = 1e-3;
+  double step = longest_step(p, d);
+  for (int cut = 0; cut < 20; ++cut, step *= 0.7) {
+    Point trial = p;
+    move(trial, d, step);
+    const double least = std::min(trial.u.cwiseProduct(trial.y).minCoeff(),
+                                  trial.v.cwiseProduct(trial.z).minCoeff());
+    if (least < neighbourhood * complementarity(trial) && cut < 19) continue;
+    p = trial;
+    return;
+  }
+}
+
+/// x with the rows that tend to a bound put on it: whether a row slips is then no matter of degree.
+VecX on_bounds(const Point& p, const VecX& F)
+{
+  VecX x = p.x.cwiseMax(-F).cwiseMin(F);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (p.u[i] < p.y[i]) x[i] = -F[i];
+    if (p.v[i] < p.z[i]) x[i] = F[i];
+  }
+  return x;
+}
+
+/// The start drawn a little into the box, with the multipliers its gradient asks for.
+Point warm_point(const MatX& S, const VecX& s, const VecX& F, const VecX& start)
+{
+  constexpr double inwards = 0.1;  // of F, and of the mean gradient
+  const VecX x = start.cwiseMax((inwards - 1.0) * F).cwiseMin((1.0 - inwards) * F);
+  const VecX gradient = S * x + s;
+  const double least = inwards * gradient.cwiseAbs().mean() + 1e-12;
+  return {x, x + F, F - x, gradient.cwiseMax(0.0).array() + least,
+          (-gradient).cwiseMax(0.0).array() + least};
+}
+
 }  // namespace
 
-BoxSolution interior_point(const MatX& S_in, const VecX& s_in, const VecX& F_in, double tolerance,
-                           int max_iterations)
+double box_residual(const MatX& S, const VecX& s, const VecX& F, const VecX& x)
 {
-  const Eigen::Index n = s_in.size();
+  const VecX gradient = S * x + s;
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double w = std::max(S(i, i), 1e-300);
+    const double natural = x[i] - std::clamp(x[i] - gradient[i] / w, -F[i], F[i]);
+    if (std::isnan(natural)) return natural;
+    worst = std::max(worst, w * std::abs(natural));
+  }
+  return worst;
+}
+
+BoxSolution interior_point(const MatX& S_in, const VecX& s_in, const VecX& F_in, const VecX& start,
+                           double tolerance, int max_iterations)
+{
   const double force = std::max(F_in.maxCoeff(), 1e-300);
   const double gap = s_in.cwiseAbs().maxCoeff() + (S_in * F_in).cwiseAbs().maxCoeff() + 1e-300;
   const VecX F = F_in.cwiseMax(1e-14 * force) / force;
   const MatX S = S_in * (force / gap);
   const VecX s = s_in / gap;
-  Point p{VecX::Zero(n), F, F, VecX::Ones(n), VecX::Ones(n)};
+  Point p = warm_point(S, s, F, start / force);
   BoxSolution result;
   for (int k = 0; k < max_iterations; ++k) {
     const VecX dual = S * p.x + s - p.y + p.z;
-    const double mu = complementarity(p);
-    if (std::max(dual.cwiseAbs().maxCoeff(), mu) < tolerance) {
-      result.finished = true;
-      break;
-    }
-    MatX shifted = S;
-    shifted.diagonal() += p.y.cwiseQuotient(p.u) + p.z.cwiseQuotient(p.v);
-    const Eigen::LLT<MatX> factor(shifted);
+    result.finished = gap * box_residual(S, s, F, on_bounds(p, F)) <= tolerance;
+    if (result.finished) break;
+    const Eigen::LLT<MatX> factor(barrier(S, p));
     ++result.factorisations;
     if (factor.info() != Eigen::Success) break;
-    const Point affine = direction(factor, p, dual, VecX::Zero(n), VecX::Zero(n));
-    Point trial = p;
-    move(trial, affine, longest_step(p, affine));
-    const double sigma = std::pow(complementarity(trial) / mu, 3);
-    const VecX corrector = affine.x.cwiseProduct(affine.y);
-    const VecX corrector_z = affine.x.cwiseProduct(affine.z);
-    const Point d = direction(factor, p, dual, VecX::Constant(n, sigma * mu) - corrector,
-                              VecX::Constant(n, sigma * mu) + corrector_z);
-    move(p, d, longest_step(p, d));
+    const Point d = corrected_direction(factor, p, dual);
+    move_centred(p, d);
   }
-  result.x = (p.x * force).cwiseMax(-F_in).cwiseMin(F_in);
+  result.x = on_bounds(p, F) * force;
   return result;
 }
 

@@ -64,23 +64,15 @@ struct Multipliers
   double contraction = 0;  ///< ratio of their last two changes, < 1 when they settle
   double residual = 0.0;   ///< true KKT residual [m], see `kkt_residual`
   int rank = 0;            ///< numerical rank of W
+  double condition = 0.0;  ///< of the kept bilateral rows, at least (0: not found, or none)
   bool nonunique = false;  ///< single λ are not unique (δ, forces and work are)
+  double seconds = 0.0;    ///< wall time of the iteration; finding the rank for the record excluded
+  double factor_seconds = 0.0;  ///< wall time of the pseudo-inverse or factor of W_bb
 };
 
 /// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
 /// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes).
 /// Rows with W_ii = 0 cannot move and do not count.
 double kkt_residual(const Problem& problem, const VecX& lambda);
-
-/// Numerical rank of a symmetric positive semidefinite matrix and a set of `rank` well-conditioned
-/// rows of it (ascending), by Cholesky with diagonal pivoting; a pivot below `cut * scale` ends it.
-/// `scale` is the largest diagonal entry of what the matrix was made from: a Schur complement that
-/// should vanish is round-off of that, not of itself. 0 takes the matrix's own.
-struct RankReveal
-{
-  int rank = 0;
-  std::vector<int> rows;
-};
-RankReveal reveal_rank(MatX matrix, double scale = 0.0, double cut = 1e-10);
 
 }  // namespace trocar::law

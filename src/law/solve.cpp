@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stopwatch.hpp"
 #include "core/words.hpp"
 #include "law/box_qp.hpp"
 #include "law/condensed.hpp"
@@ -11,16 +12,44 @@
 namespace trocar::law {
 namespace {
 
-VecX run(Method method, const Condensed& condensed, const VecX& start, const Settings& settings,
-         Multipliers& result)
+constexpr int most_interior_steps = 100;
+constexpr int most_warm_sets = 6;      ///< factorisations to get there from the last step's sets
+constexpr double box_tolerance = 0.1;  ///< of the tolerance: what the box rows may leave of it
+
+VecX take(const BoxSolution& answer, Multipliers& result)
 {
-  const BoxSolution answer = method == Method::interior_point
-                                 ? interior_point(condensed.S(), condensed.s(), condensed.bound(),
-                                                  1e-12, std::min(settings.max_iterations, 100))
-                                 : active_set(condensed.S(), condensed.s(), condensed.bound(),
-                                              start, settings.max_iterations);
   result.iterations += answer.factorisations;
   return answer.x;
+}
+
+VecX interior(Condensed& condensed, const Settings& settings, Multipliers& result)
+{
+  return take(interior_point(condensed.S(), condensed.s(), condensed.bound(), condensed.start(),
+                             box_tolerance * settings.tolerance,
+                             std::min(settings.max_iterations, most_interior_steps)),
+              result);
+}
+
+VecX walk(Condensed& condensed, const VecX& start, const Settings& settings, Multipliers& result)
+{
+  return take(
+      active_set(condensed.S(), condensed.s(), condensed.bound(), start, settings.max_iterations),
+      result);
+}
+
+/// All slipping as they did, which needs no S; or last step's sets, when they lead on; or the
+/// interior point, whose cost hardly depends on how many rows change.
+VecX automatic(Condensed& condensed, const Settings& settings, Multipliers& result)
+{
+  if (const std::optional<VecX> slipping = condensed.all_slipping()) return *slipping;
+  const MatX& S = condensed.S();
+  const VecX &s = condensed.s(), &F = condensed.bound();
+  const BoxSolution warm =
+      set_newton(S, s, F, condensed.start(), settings.tolerance, most_warm_sets);
+  VecX x = take(warm, result);
+  if (!warm.finished || !(box_residual(S, s, F, x) <= settings.tolerance))
+    x = interior(condensed, settings, result);
+  return x;
 }
 
 void judge(const Problem& problem, const Settings& settings, const VecX& lambda,
@@ -31,34 +60,59 @@ void judge(const Problem& problem, const Settings& settings, const VecX& lambda,
   result.converged = result.residual <= settings.tolerance;
 }
 
+/// Worst |δ| of the bilateral rows [m]: no box solver can mend it.
+double bilateral_residual(const Problem& problem, const VecX& lambda)
+{
+  const std::vector<int> rows = split_rows(problem).bilateral;
+  const VecX delta = problem.W * lambda + problem.g;
+  return rows.empty() ? 0.0 : delta(rows).cwiseAbs().maxCoeff();
+}
+
+void solve_boxes(const Problem& problem, const Settings& settings, Condensed& condensed,
+                 Multipliers& result)
+{
+  VecX lambda_f;
+  if (settings.method == Method::interior_point)
+    lambda_f = interior(condensed, settings, result);
+  else if (settings.method == Method::active_set)
+    lambda_f = walk(condensed, condensed.start(), settings, result);
+  else
+    lambda_f = automatic(condensed, settings, result);
+  judge(problem, settings, condensed.expand(lambda_f), result);
+  if (result.converged || settings.method != Method::automatic) return;
+  if (bilateral_residual(problem, result.lambda) > settings.tolerance) return;
+  lambda_f = walk(condensed, lambda_f, settings, result);
+  judge(problem, settings, condensed.expand(lambda_f), result);
+}
+
+std::string complaint(const Problem& problem, const Settings& settings, const Multipliers& result)
+{
+  const double bilateral = bilateral_residual(problem, result.lambda);
+  const bool contradict = bilateral > settings.tolerance;
+  return "the constraints could not be met: residual " + core::shown(result.residual) +
+         " m after " + std::to_string(result.iterations) + " factorisations, rank " +
+         std::to_string(result.rank) + " of " + std::to_string(problem.rows()) + " rows" +
+         (contradict ? ", redundant rows contradict each other by " + core::shown(bilateral) + " m"
+                     : "");
+}
+
 Multipliers solve_condensed(const Problem& problem, const Settings& settings)
 {
   Multipliers result;
-  const Condensed condensed(problem);
-  const int box_rows = static_cast<int>(condensed.s().size());
+  core::Stopwatch watch;
+  Condensed condensed(problem);
+  result.factor_seconds = watch.seconds();
+  watch = {};
+  if (condensed.box_rows() == 0)
+    judge(problem, settings, condensed.expand(VecX()), result);
+  else
+    solve_boxes(problem, settings, condensed, result);
+  result.seconds = watch.seconds();
   const int box_rank = condensed.box_rank();
   result.rank = condensed.bilateral_rank() + box_rank;
-  result.nonunique = condensed.bilateral_redundant() || box_rank < box_rows;
-  if (box_rows == 0) {
-    judge(problem, settings, condensed.expand(VecX()), result);
-  } else {
-    Method first = settings.method;
-    if (first == Method::automatic)
-      first = box_rank < box_rows ? Method::interior_point : Method::active_set;
-    VecX lambda_f = run(first, condensed, condensed.start(), settings, result);
-    judge(problem, settings, condensed.expand(lambda_f), result);
-    if (!result.converged && settings.method == Method::automatic) {
-      const Method other =
-          first == Method::active_set ? Method::interior_point : Method::active_set;
-      // The active set starts from the interior point's answer: it only has to polish it.
-      lambda_f = run(other, condensed, lambda_f, settings, result);
-      judge(problem, settings, condensed.expand(lambda_f), result);
-    }
-  }
-  if (!result.converged)
-    result.why = "the constraints could not be met: residual " + core::shown(result.residual) +
-                 " m after " + std::to_string(result.iterations) + " factorisations, rank " +
-                 std::to_string(result.rank) + " of " + std::to_string(problem.rows()) + " rows";
+  result.condition = condensed.bilateral_condition();
+  result.nonunique = condensed.bilateral_redundant() || box_rank < condensed.box_rows();
+  if (!result.converged) result.why = complaint(problem, settings, result);
   return result;
 }
 
@@ -149,11 +203,14 @@ Multipliers solve_fixed(const Problem& problem, const Settings& settings)
   const VecX w = mobility(problem);
   Multipliers result;
   int iterations = 0;
+  double seconds = 0.0, factor_seconds = 0.0;
   bool at_drawn_bound = true;
   for (double reach = first_reach; at_drawn_bound && reach <= last_reach; reach *= 1e4) {
     const Intervals interval = intervals(problem, w, reach);
     result = solve_within(problem, w, interval, settings);
     result.iterations = iterations += result.iterations;
+    result.seconds = seconds += result.seconds;
+    result.factor_seconds = factor_seconds += result.factor_seconds;
     at_drawn_bound = false;
     for (Eigen::Index i = 0; i < problem.rows(); ++i) {
       const double away = problem.kind[static_cast<std::size_t>(i)] == RowKind::push
@@ -172,12 +229,15 @@ Multipliers solve_fixed(const Problem& problem, const Settings& settings)
 }
 
 /// Tresca iteration: solve with fixed bounds, take the bounds from the answer, again, until they
-/// change by less than the tolerance (in the gap they make). For small friction it contracts; the
-/// ratio of the last two changes is reported, and when they do not settle the step is refused.
+/// change by less than the tolerance (in the gap they make). For small friction it contracts; where
+/// it hardly does, as when bounds overshoot in turn, they go half the way. The ratio of the last
+/// two changes is reported, and when they do not settle the step is refused.
 Multipliers settle_bounds(Problem problem, const Settings& settings)
 {
   constexpr int most = 50;
+  constexpr double slow = 0.7;
   const VecX w = mobility(problem);
+  double part = 1.0;
   const auto set_bounds = [&](const VecX& lambda) {
     double change = 0.0;
     for (Eigen::Index i = 0; i < problem.rows(); ++i) {
@@ -185,7 +245,7 @@ Multipliers settle_bounds(Problem problem, const Settings& settings)
       if (normal < 0) continue;
       const double bound = problem.friction[i] * std::max(lambda[normal], 0.0);
       change = std::max(change, w[i] * std::abs(bound - problem.bound[i]));
-      problem.bound[i] = bound;
+      problem.bound[i] += part * (bound - problem.bound[i]);
     }
     return change;
   };
@@ -203,6 +263,7 @@ Multipliers settle_bounds(Problem problem, const Settings& settings)
     if (last_change > 0.0) contraction = change / last_change;
     result.contraction = contraction;
     last_change = change;
+    if (contraction > slow) part = 0.5;
     if (!result.converged || change <= settings.tolerance) return result;
     problem.start = result.lambda;
   }

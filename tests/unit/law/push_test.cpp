@@ -89,10 +89,19 @@ TEST(FollowingBounds, SettleAtCoulombsLaw)
     }
 }
 
-// Where friction wedges the tip the bounds run away: refused, with the ratio.
+// Bounds that overshoot in turn go half the way: λ_n = 1 / (1 + 1.5 · 0.9).
+TEST(FollowingBounds, SettleWhereTheyOvershoot)
+{
+  const Multipliers m = solve(contact(0.9e-3, 1.5), {});
+  ASSERT_TRUE(m.converged) << m.why;
+  EXPECT_NEAR(m.lambda[0], 1.0 / 2.35, 2e-6);
+  EXPECT_GT(m.outer, 5);
+}
+
+// Beyond what that mends they are refused, with the ratio.
 TEST(FollowingBounds, ThatDoNotSettleAreRefused)
 {
-  const Multipliers m = solve(contact(-0.9e-3, 1.5), {});
+  const Multipliers m = solve(contact(0.9e-3, 5.0), {});
   EXPECT_FALSE(m.converged);
   EXPECT_NE(m.why.find("did not settle"), std::string::npos) << m.why;
 }

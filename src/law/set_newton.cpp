@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+
+#include "law/box_qp.hpp"
+
+namespace trocar::law {
+namespace {
+
+/// What rows do: -1 and 1 on that bound, 0 free.
+using Sets = std::vector<signed char>;
+
+Sets sets_of(const VecX& x, const VecX& F)
+{
+  Sets sets(static_cast<std::size_t>(x.size()), 0);
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (std::abs(x[i]) >= F[i]) sets[static_cast<std::size_t>(i)] = x[i] > 0.0 ? 1 : -1;
+  return sets;
+}
+
+/// Factor of H on the free rows of some sets.
+struct Factor
+{
+  std::vector<int> free;
+  Eigen::LLT<MatX> cholesky;
+
+  /// False when H is not positive definite there, by round-off.
+  bool make(const MatX& H, const Sets& sets)
+  {
+    free.clear();
+    for (int i = 0; i < static_cast<int>(sets.size()); ++i)
+      if (sets[static_cast<std::size_t>(i)] == 0) free.push_back(i);
+    if (free.empty()) return true;
+    cholesky.compute(H(free, free));
+    return cholesky.info() == Eigen::Success;
+  }
+};
+
+/// Puts x on the bounds of its sets and minimises ½ xᵀHx + hᵀx over the free rows.
+VecX minimise(const MatX& H, const VecX& h, const VecX& F, const Sets& sets, const Factor& factor,
+              VecX x)
+{
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (const int side = sets[static_cast<std::size_t>(i)]; side != 0) x[i] = side * F[i];
+  if (factor.free.empty()) return x;
+  const VecX gradient = H * x + h;
+  x(factor.free) -= factor.cholesky.solve(gradient(factor.free));
+  return x;
+}
+
+/// Sets that x and its gradient ask for: rows outside the box go on it, rows pulled inwards by
+/// more than the tolerance go free.
+Sets next_sets(const VecX& x, const VecX& gradient, const VecX& F, const Sets& sets,
+               double tolerance)
+{
+  Sets next = sets;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    signed char& side = next[static_cast<std::size_t>(i)];
+    if (side == 0 && std::abs(x[i]) > F[i])
+      side = x[i] > 0.0 ? 1 : -1;
+    else if (side * gradient[i] > tolerance && F[i] > 0.0)
+      side = 0;
+  }
+  return next;
+}
+
+int differences(const Sets& a, const Sets& b)
+{
+  int count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i] ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+BoxSolution set_newton(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
+                       double tolerance, int max_iterations)
+{
+  const double shift = 0.1 * tolerance / std::max(F.maxCoeff(), 1e-300);
+  MatX H = S;
+  H.diagonal().array() += shift;
+  BoxSolution result;
+  result.x = start.cwiseMax(-F).cwiseMin(F);
+  const VecX h = s - shift * result.x;
+  Sets sets = sets_of(result.x, F);
+  Factor factor;
+  VecX x = result.x;
+  int changes = static_cast<int>(x.size()) + 1;
+  while (!result.finished && result.factorisations < max_iterations) {
+    ++result.factorisations;
+    if (!factor.make(H, sets)) break;
+    x = minimise(H, h, F, sets, factor, x);
+    const Sets next = next_sets(x, H * x + h, F, sets, 0.1 * tolerance);
+    const int last_changes = changes;
+    changes = differences(sets, next);
+    result.finished = changes == 0;
+    if (changes >= last_changes) break;
+    sets = next;
+  }
+  if (!result.finished) return result;
+  // The shift set again at the answer fades: what S itself determines becomes exact.
+  for (int round = 0; round < 2; ++round) {
+    result.x = x;
+    x = minimise(H, s - shift * x, F, sets, factor, x);
+    if (next_sets(x, S * x + s, F, sets, 0.1 * tolerance) != sets) break;
+    result.x = x;
+  }
+  return result;
+}
+
+}  // namespace trocar::law
