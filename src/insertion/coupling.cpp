@@ -78,17 +78,22 @@ void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& frict
   }
 }
 
-/// Which points hold the shaft laterally: all, but when they stand at a spacing along a path that
-/// is not straight, the last one of each tet and the first of all. In a tet the displacement is
-/// linear, so that more points on a curve contradict each other by little, and fight it out with
-/// huge forces.
+/// Which points hold the shaft laterally: all, but when they stand closer than `merge` local edges
+/// along a path that is not straight, the first of all and the last one of each tet that the tip
+/// has left, which is where crossings would be. In a tet the displacement is linear, so that more
+/// points on a curve contradict each other by little, and fight it out with huge forces.
 std::vector<bool> Insertion::lateral_points(const InsertionState& state) const
 {
   const std::size_t count = state.points.size();
+  const PlacementSettings& placement = settings_.placement;
   std::vector<bool> lateral(count, true);
-  if (settings_.placement.placement == Placement::crossings || straight(state.path)) return lateral;
-  for (std::size_t k = 1; k + 1 < count; ++k)
-    lateral[k] = state.path.sites[k].tet != state.path.sites[k + 1].tet;
+  if (placement.placement == Placement::crossings || straight(state.path)) return lateral;
+  for (std::size_t k = 1; k < count; ++k) {
+    const int tet = state.path.sites[k].tet;
+    const double edge = arc_tolerance(*mesh_, tet) / relative_tolerance;
+    const bool last_of_tet = k + 1 < count && tet != state.path.sites[k + 1].tet;
+    lateral[k] = last_of_tet || placement.spacing >= placement.merge * edge;
+  }
   return lateral;
 }
 
