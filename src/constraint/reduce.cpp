@@ -54,23 +54,14 @@ std::vector<int> Set::probed_nodes() const
   return nodes;
 }
 
-Reduced reduce(const Set& set, const fem::Space& space, const fem::OwnedField& free_increment,
-               solve::IsolatedCompliance& compliance, const std::vector<SmallBody>& bodies)
+law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
+                    const std::vector<SmallBody>& bodies)
 {
-  Reduced reduced;
-  law::Problem& problem = reduced.problem;
-  const std::vector<int> nodes = set.probed_nodes();
-  const core::MatX C = compliance.block({nodes, {}}, reduced.compliance);
-  const Sparse H = rows_on_probes(set, nodes);
+  law::Problem problem;
+  const Sparse H = rows_on_probes(set, set.probed_nodes());
   const core::MatX HC = H * C;
   problem.W = HC * H.transpose();
-
-  const fem::GlobalField u = space.gather(free_increment);
-  core::VecX at_probes(3 * static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    at_probes.segment<3>(3 * static_cast<Eigen::Index>(k)) = u.node(nodes[k]);
-  problem.g = H * at_probes;
-
+  problem.g = H * free;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Eigen::Index dofs = bodies[b].free_increment.size();
     if (dofs == 0) continue;
@@ -95,7 +86,12 @@ Reduced reduce(const Set& set, const fem::Space& space, const fem::OwnedField& f
     problem.kind.push_back(row.kind);
     problem.group.push_back(row.point);
   }
-  return reduced;
+  return problem;
+}
+
+core::VecX probe_forces(const Set& set, const core::VecX& lambda)
+{
+  return rows_on_probes(set, set.probed_nodes()).transpose() * lambda;
 }
 
 fem::OwnedField tissue_forces(const Set& set, const core::VecX& lambda, const fem::Space& space)

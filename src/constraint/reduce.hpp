@@ -4,22 +4,17 @@
 
 #include "constraint/set.hpp"
 #include "fem/space.hpp"
-#include "solve/isolated_compliance.hpp"
 
 namespace trocar::constraint {
 
-/// The dense problem of a set, and how its compliance was come by.
-struct Reduced
-{
-  law::Problem problem;
-  solve::ComplianceReport compliance;
-};
-
 /// W = Ĥ C Ĥᵀ + H_n A_n⁻¹ H_nᵀ  and  g = gap + H u_free - H_n w_free  (paper eq. 3), with C the
-/// isolated compliance and w the increments of the small bodies. `free_increment` is the tissue's
-/// free motion. Equal on every rank. Collective.
-Reduced reduce(const Set& set, const fem::Space& space, const fem::OwnedField& free_increment,
-               solve::IsolatedCompliance& compliance, const std::vector<SmallBody>& bodies);
+/// isolated compliance of the set's probed nodes [m/N] and `free` the tissue's free motion at them,
+/// from where the gaps were measured [m]; w are the increments of the small bodies. Not collective.
+law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
+                    const std::vector<SmallBody>& bodies);
+
+/// Ĥᵀλ: forces on the set's probed nodes [N], three each.
+core::VecX probe_forces(const Set& set, const core::VecX& lambda);
 
 /// Hᵀλ on the tissue: nodal forces of the owned nodes [N]. Not collective.
 fem::OwnedField tissue_forces(const Set& set, const core::VecX& lambda, const fem::Space& space);

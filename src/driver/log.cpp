@@ -3,9 +3,15 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/blas.hpp"
 #include "driver/recorder.hpp"
 
 namespace trocar::driver {
+namespace {
+
+constexpr double sensible_blas_rate = 8e9;  ///< reference BLAS does 6 Gflop/s, OpenBLAS 40 to 110
+
+}  // namespace
 
 Log::Log(const Simulation& simulation) : simulation_(&simulation) {}
 
@@ -28,6 +34,13 @@ void Log::set_up(double seconds) const
   std::printf("  quality: mean %.3f, worst %.3f (tet %lld)\n", q.mean, q.smallest, q.worst_tag);
   std::printf("ranks %d, tissue solver %s, set-up %.2f s\n", simulation_->space().comm().size(),
               solver.c_str(), seconds);
+  const double rate = base::blas_rate();
+  std::printf("dense products %.0f Gflop/s\n", 1e-9 * rate);
+  if (rate < sensible_blas_rate)
+    std::printf(
+        "warning: the BLAS is slow (reference BLAS, or a busy machine): install "
+        "libopenblas0-serial, and set OMP_THREAD_LIMIT=1 and, on AVX-512 processors, "
+        "OPENBLAS_CORETYPE=SkylakeX\n");
   for (const std::string& warning : scenario.warnings)
     std::printf("warning: %s\n", warning.c_str());
   std::fflush(stdout);

@@ -188,9 +188,10 @@ std::vector<OptionSpec> build_table()
           "constraint_compare",
           "solvers to be timed on every constraint problem beside the one of the run, for studies: "
           "METHOD[:NORM[:TOLERANCE]],…"),
-      choice("compliance_provider", "auto", {"auto", "ksp", "ksp_block"},
-             "columns of the isolated compliance: one KSP solve each, or in blocks; auto takes "
-             "ksp when a tissue_ksp or tissue_pc option is given"),
+      choice("compliance_provider", "auto", {"auto", "supernodal", "ksp", "ksp_block"},
+             "tissue solver and columns of the isolated compliance: a supernodal factor, or PETSc "
+             "with one solve per column or blocks of them; auto takes ksp when a tissue_ksp or "
+             "tissue_pc option is given, ksp_block when the factor would not fit in memory"),
       word("output_dir", "results", "folder of the results"),
       count("output_every", "1", 1, "field files every so many steps"),
       [] {

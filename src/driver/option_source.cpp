@@ -163,7 +163,8 @@ std::map<std::string, core::OptionValue> take_options(const Invocation& invocati
 bool tissue_solver_given()
 {
   for (const std::string& name : unused_options().names)
-    if (name.rfind("tissue_ksp_", 0) == 0 || name.rfind("tissue_pc_", 0) == 0) return true;
+    for (const char* start : {"tissue_ksp_", "tissue_pc_", "tissue_mat_"})
+      if (name.rfind(start, 0) == 0) return true;
   return false;
 }
 

@@ -257,10 +257,12 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.insertion = read_insertion(options, scenario.mesh);
   refuse_dashpots_without_time(scenario);
   scenario.needles = read_needles(options, scenario.mesh, scenario.time.end, comm);
-  const std::string provider = options.text("compliance_provider");
-  const bool one_by_one = provider == "ksp" || (provider == "auto" && tissue_solver_given());
-  scenario.tissue.columns =
-      one_by_one ? solve::ColumnSolver::one_by_one : solve::ColumnSolver::blocked;
+  const std::map<std::string, solve::Provider> providers{
+      {"auto", tissue_solver_given() ? solve::Provider::ksp : solve::Provider::automatic},
+      {"supernodal", solve::Provider::supernodal},
+      {"ksp", solve::Provider::ksp},
+      {"ksp_block", solve::Provider::ksp_block}};
+  scenario.tissue.provider = providers.at(options.text("compliance_provider"));
   options.refuse_unread();
   add_warnings(scenario);
   return scenario;

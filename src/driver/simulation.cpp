@@ -111,11 +111,9 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
       tissue_.free_motion(old.tissue, next.tissue.u, now);  // 2 each body alone
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
-  const core::VecX free = next.tissue.u.value + tissue.increment.value;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
   for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
-    const fem::OwnedField increment{free - next.tissue.u.value};
-    pass = constrained_step(old, now, increment, next, report);  // 3 to 5
+    pass = constrained_step(old, now, tissue, next, report);  // 3 to 5
     if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
   }
@@ -128,7 +126,7 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
 }
 
 Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
-                                              const fem::OwnedField& increment, State& next,
+                                              const tissue::FreeMotion& tissue, State& next,
                                               StepReport& report)
 {
   Pass pass;
@@ -137,8 +135,8 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
     needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
   pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
   if (!pass.rows.set.empty())            // 4 W and g from the isolated compliance, then the laws
-    pass.trouble = solve_constraints(increment, needles, pass, report);
-  if (!pass.trouble) correct(old, now, increment, needles, pass, next, report);  // 5
+    pass.trouble = solve_constraints(tissue, next.tissue.u, needles, pass, report);
+  if (!pass.trouble) correct(old, now, tissue, needles, pass, next, report);  // 5
   return pass;
 }
 
@@ -175,21 +173,25 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
 }
 
 std::optional<std::string> Simulation::solve_constraints(
-    const fem::OwnedField& free_increment, const std::vector<needle::Linearised>& needles,
-    Pass& pass, StepReport& report)
+    const tissue::FreeMotion& tissue, const fem::OwnedField& u,
+    const std::vector<needle::Linearised>& needles, Pass& pass, StepReport& report)
 {
   const constraint::Set& set = pass.rows.set;
   std::vector<constraint::SmallBody> bodies;
   for (const needle::Linearised& needle : needles)
     bodies.push_back({needle.held, needle.factor, needle.free_increment});
-  const constraint::Reduced reduced =
-      constraint::reduce(set, space_, free_increment, tissue_.compliance(), bodies);
-  pass.lambda = law::solve(reduced.problem, scenario_.laws);
+  pass.probes.nodes = set.probed_nodes();
+  solve::ComplianceReport compliance;
+  const core::MatX C = tissue_.compliance().block(pass.probes, compliance);
+  const core::VecX free = tissue_.at(pass.probes, tissue, u);
+  const law::Problem problem = constraint::reduce(set, C, free, bodies);
+  pass.lambda = law::solve(problem, scenario_.laws);
   ++ledger_.constraint_solves;
   if (!pass.lambda.converged) return pass.lambda.why;
-  law::compare(reduced.problem, scenario_.compare, report.trials);
+  law::compare(problem, scenario_.compare, report.trials);
 
-  pass.mobility = law::mobility(reduced.problem);
+  pass.mobility = law::mobility(problem);
+  pass.forces = constraint::probe_forces(set, pass.lambda.lambda);
   pass.push = constraint::tissue_forces(set, pass.lambda.lambda, space_);
   for (std::size_t i = 0; i < needles_.size(); ++i)
     pass.levers.push_back(
@@ -202,21 +204,20 @@ std::optional<std::string> Simulation::solve_constraints(
   report.residual = std::max(report.residual, pass.lambda.residual);
   report.outer = std::max(report.outer, pass.lambda.outer);
   report.contraction = std::max(report.contraction, pass.lambda.contraction);
-  report.compliance.probes = reduced.compliance.probes;
-  report.compliance.built += reduced.compliance.built;
-  report.compliance.reused += reduced.compliance.reused;
-  report.compliance.seconds += reduced.compliance.seconds;
+  report.compliance.probes = compliance.probes;
+  report.compliance.built += compliance.built;
+  report.compliance.reused += compliance.reused;
+  report.compliance.seconds += compliance.seconds;
   return std::nullopt;
 }
 
 void Simulation::correct(const State& old, const core::TimeStep& now,
-                         const fem::OwnedField& free_increment,
+                         const tissue::FreeMotion& tissue,
                          const std::vector<needle::Linearised>& needles, const Pass& pass,
                          State& next, StepReport& report)
 {
   const bool pushed = pass.lambda.lambda.size() > 0;
-  next.tissue.u.value += free_increment.value;
-  if (pushed) next.tissue.u.value += tissue_.respond(pass.push).value;
+  next.tissue.u = tissue_.finish(tissue, pass.probes, pass.forces);
   next.tissue.v.value = now.inverse() * (next.tissue.u.value - old.tissue.u.value);
   report.needles.assign(needles_.size(), {});
   for (std::size_t i = 0; i < needles_.size(); ++i) {

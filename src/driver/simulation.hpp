@@ -121,6 +121,8 @@ class Simulation
     std::optional<std::string> trouble;  ///< why the step cannot be taken; agreed by all ranks
     law::Multipliers lambda;
     core::VecX mobility;             ///< W_ii, 0 on rows that nothing can move [m/N]
+    solve::Probes probes;            ///< tissue nodes that the rows hold
+    core::VecX forces;               ///< Ĥᵀλ on them [N]
     fem::OwnedField push;            ///< Hᵀλ on the tissue [N]
     std::vector<core::VecX> levers;  ///< H_nᵀλ on each needle
   };
@@ -128,14 +130,15 @@ class Simulation
   Pass linearised_step(const State& old, const core::TimeStep& now, State& next,
                        StepReport& report);
   Pass constrained_step(const State& old, const core::TimeStep& now,
-                        const fem::OwnedField& increment, State& next, StepReport& report);
+                        const tissue::FreeMotion& tissue, State& next, StepReport& report);
   bool gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const;
   std::optional<std::string> move_needles(const State& old, State& next) const;
   Rows coupling_rows(const core::TimeStep& now, const State& state) const;
-  std::optional<std::string> solve_constraints(const fem::OwnedField& free_increment,
+  std::optional<std::string> solve_constraints(const tissue::FreeMotion& tissue,
+                                               const fem::OwnedField& u,
                                                const std::vector<needle::Linearised>& needles,
                                                Pass& pass, StepReport& report);
-  void correct(const State& old, const core::TimeStep& now, const fem::OwnedField& free_increment,
+  void correct(const State& old, const core::TimeStep& now, const tissue::FreeMotion& tissue,
                const std::vector<needle::Linearised>& needles, const Pass& pass, State& next,
                StepReport& report);
   bool balanced(const State& old, const State& next, const core::TimeStep& now, const Pass& pass,

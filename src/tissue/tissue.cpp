@@ -76,17 +76,15 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
     if (space_->comm().all(same)) return;
   } else {
     Operator fresh;
-    fresh.system = std::make_unique<solve::LinearSystem>(*space_, pattern_, mesh_->x,
-                                                         settings_.linear, *ledger_);
-    fresh.compliance =
-        std::make_unique<solve::KspCompliance>(*fresh.system, fixed_, settings_.columns, *ledger_);
+    fresh.solver = solve::make_step_solver(
+        settings_.provider, {*space_, pattern_, fixed_, mesh_->x, settings_.linear, *ledger_});
     operators_.push_back(std::move(fresh));
     current_ = &operators_.back();
   }
   current_->inverse_h = inverse_h;
   if (!linear) current_->R = R;
   assemble(R, inverse_h);
-  current_->system->set_operator(values_);
+  current_->solver->set_operator(values_);
 }
 
 OwnedField Tissue::external(const TimeStep& step) const
@@ -152,7 +150,7 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
 {
   std::vector<Mat3> R;
   if (!rotations(space_->with_ghosts(iterate), R))
-    return {space_->zero(), "an element of the tissue turned inside out"};
+    return {space_->zero(), {}, "an element of the tissue turned inside out"};
   use_operator(R, step);
   OwnedField r = forces(old, iterate, R, step, nullptr);
 
@@ -167,11 +165,30 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   }
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
   if (moves) r.value -= apply_operator(prescribed, R, step.inverse()).value;
-  fixed_.clear(r);
-  FreeMotion motion{current_->system->solve(r), std::nullopt};
-  fixed_.clear(motion.increment);
-  if (moves) motion.increment.value += prescribed.value;
-  return motion;
+  return {{iterate.value + prescribed.value}, begin(r), std::nullopt};
+}
+
+core::VecX Tissue::at(const solve::Probes& probes, const FreeMotion& motion, const OwnedField& u)
+{
+  core::VecX read = current_->solver->at(probes, motion.half);
+  const OwnedField ahead{motion.base.value - u.value};
+  if (!space_->comm().any(!ahead.value.isZero(0.0))) return read;
+  const fem::GlobalField all = space_->gather(ahead);
+  for (std::size_t k = 0; k < probes.nodes.size(); ++k)
+    read.segment<3>(3 * static_cast<Eigen::Index>(k)) += all.node(probes.nodes[k]);
+  for (std::size_t k = 0; k < probes.wide.size(); ++k)
+    read[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] +=
+        space_->dot(probes.wide[k]->vector, ahead);
+  return read;
+}
+
+OwnedField Tissue::finish(const FreeMotion& motion, const solve::Probes& probes,
+                          const core::VecX& f)
+{
+  OwnedField u = current_->solver->finish(motion.half, probes, f);
+  fixed_.clear(u);
+  u.value += motion.base.value;
+  return u;
 }
 
 bool Tissue::possible(const OwnedField& u) const
@@ -187,13 +204,11 @@ bool Tissue::possible(const OwnedField& u) const
   return space_->comm().all(good);
 }
 
-OwnedField Tissue::respond(const OwnedField& forces)
+solve::HalfSolution Tissue::begin(const OwnedField& forces)
 {
   OwnedField f = forces;
   fixed_.clear(f);
-  OwnedField u = current_->system->solve(f);
-  fixed_.clear(u);
-  return u;
+  return current_->solver->begin(f);
 }
 
 OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
@@ -209,7 +224,7 @@ OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const T
 
 std::string Tissue::describe_solver() const
 {
-  return current_->system->describe();
+  return current_->solver->describe();
 }
 
 void Tissue::prepare(const TimeStep& step)

@@ -7,7 +7,7 @@
 
 #include "core/time_step.hpp"
 #include "mesh/mesh.hpp"
-#include "solve/isolated_compliance.hpp"
+#include "solve/step_solver.hpp"
 #include "tissue/boundary.hpp"
 #include "tissue/elastic.hpp"
 
@@ -26,7 +26,7 @@ struct TissueSettings
   std::vector<Material> materials;  ///< by volume of the mesh
   BoundaryConditions boundary;
   solve::LinearSettings linear;
-  solve::ColumnSolver columns = solve::ColumnSolver::blocked;
+  solve::Provider provider = solve::Provider::automatic;
 };
 
 /// Displacement and velocity of every owned node. A value.
@@ -36,10 +36,11 @@ struct TissueState
   OwnedField v;  ///< [m/s]
 };
 
-/// Answer of the tissue alone to one linearisation: u_free = iterate + increment.
+/// Answer of the tissue alone to one linearisation: u_free = base + A⁻¹ r, half solved.
 struct FreeMotion
 {
-  OwnedField increment;                ///< [m]
+  OwnedField base;                     ///< the iterate, with prescribed displacements [m]
+  solve::HalfSolution half;            ///< of A⁻¹ r
   std::optional<std::string> trouble;  ///< why the step cannot be taken; equal on all ranks
 };
 
@@ -71,8 +72,16 @@ class Tissue
   /// Collective.
   bool possible(const OwnedField& u) const;
 
-  /// A⁻¹ f for nodal forces f [N] with the operator of the last `free_motion`. Collective.
-  OwnedField respond(const OwnedField& forces);
+  /// u_free - u at the probes [m], by slot. Collective.
+  core::VecX at(const solve::Probes& probes, const FreeMotion& motion, const OwnedField& u);
+
+  /// u_free + A⁻¹ Sᵀ f [m] for forces f [N] by slot of the probes; without probes u_free.
+  /// Collective.
+  OwnedField finish(const FreeMotion& motion, const solve::Probes& probes, const core::VecX& f);
+
+  /// A⁻¹ f for nodal forces f [N] with the operator of the last `free_motion`, half solved.
+  /// Collective.
+  solve::HalfSolution begin(const OwnedField& forces);
 
   /// r = f_ext - f_int(u) - M(Δu/h - v)/h - BΔu/h [N] on free dofs, and the size of its terms.
   /// `scale` gets ‖f_ext‖ + ‖f_int‖ + ‖inertia‖, but at least 1e-5 E V^(2/3): an unloaded body is
@@ -86,7 +95,7 @@ class Tissue
             const OwnedField& push) const;
 
   /// The compliance that belongs to the operator of the last `free_motion`.
-  solve::IsolatedCompliance& compliance() { return *current_->compliance; }
+  solve::IsolatedCompliance& compliance() { return current_->solver->compliance(); }
 
   const fem::Dirichlet& fixed() const { return fixed_; }
   const mesh::Mesh& mesh() const { return *mesh_; }
@@ -105,8 +114,7 @@ class Tissue
   {
     double inverse_h = -1.0;
     std::vector<Mat3> R;  ///< rotations it was assembled with; empty for linear tissue
-    std::unique_ptr<solve::LinearSystem> system;
-    std::unique_ptr<solve::IsolatedCompliance> compliance;
+    std::unique_ptr<solve::StepSolver> solver;
   };
 
   bool rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const;

@@ -21,7 +21,8 @@ folder = completed(none)
 work = ledger(folder)
 check(work["constraint_solves"] == 0 and work["columns_built"] == 0,
       "no needle: no compliance column and no constraint solve")
-check(work["solves"] == work["steps"], "no needle: one solve per step")
+check(work["half_sweeps"] == 2 * work["steps"] and work["solves"] == 0,
+      "no needle: one forward and one backward half-sweep per step")
 check(not any(name.startswith("needle") for name in histories(folder)), "no needle: no histories")
 
 outside = {**small, "-needle_velocity": "0", "-time_end": "0.2"}
@@ -31,7 +32,12 @@ check(work["constraint_solves"] == 0, "a needle outside costs no constraint solv
 folder = completed({**small, "-output_fields": '""', "-time_end": "0.2"})
 check(os.listdir(os.path.join(folder, "fields")) == [], "no output fields: no field file")
 
-for provider, more in (("ksp", {}), ("ksp_block", {}), ("auto", {"-tissue_ksp_type": "cg"})):
+work = ledger(completed({**small, "-time_end": "1"}))
+check(work["half_sweeps"] == 2 * work["steps"] and work["solves"] == 0,
+      "free motion, constraints and correction: one sweep per step")
+
+for provider, more in (("ksp", {}), ("ksp_block", {}), ("auto", {"-tissue_ksp_type": "cg"}),
+                       ("auto", {"-tissue_mat_mumps_icntl_14": "80"})):
     work = ledger(completed({**small, "-compliance_provider": provider, "-time_end": "1", **more}))
     solves = 2 * work["steps"] - (work["steps"] - work["constraint_solves"])
     expected = solves + (0 if provider == "ksp_block" else work["columns_built"])

@@ -8,12 +8,12 @@
 namespace trocar {
 namespace {
 
-tissue::TissueSettings held(solve::ColumnSolver columns)
+tissue::TissueSettings held(solve::Provider provider)
 {
   tissue::TissueSettings settings;
   settings.model = tissue::Model::linear;
   settings.boundary.fixed = {{"z0", 7}, {"x0", 2}};
-  settings.columns = columns;
+  settings.provider = provider;
   return settings;
 }
 
@@ -51,7 +51,7 @@ solve::WideProbe wide_probe(const test::Body& body, long long id)
   return {id, body.space.restrict_to_owned(field)};
 }
 
-class Compliance : public ::testing::TestWithParam<solve::ColumnSolver>
+class Compliance : public ::testing::TestWithParam<solve::Provider>
 {
 };
 
@@ -118,13 +118,45 @@ TEST_P(Compliance, ANewOperatorForgetsEveryColumn)
   EXPECT_EQ(body.ledger.assemblies, 2);
 }
 
+// What a step does with one operator: the free motion at the probes, and the motion with forces on
+// them, for probes that come and go one node at a time.
+TEST_P(Compliance, FinishesAHalfSolutionWithForcesOnItsProbes)
+{
+  test::Body body({4, 3, 3, core::Vec3(0.1, 0.08, 0.08), 0.2}, held(GetParam()));
+  body.tissue.prepare({0.0, 0.01, false});
+  const tissue::TissueState rest = body.tissue.at_rest();
+  const core::MatX inverse = dense_inverse(body, 0.01);
+  const solve::WideProbe wide = wide_probe(body, 3);
+  const fem::GlobalField load{core::VecX::NullaryExpr(
+      3 * body.mesh.node_count(), [](Eigen::Index i) { return std::cos(static_cast<double>(i)); })};
+  fem::OwnedField b = body.space.restrict_to_owned(load);
+  body.tissue.fixed().clear(b);
+  const core::VecX dense_load = body.space.gather(b).value;
+  std::vector<int> nodes{20};
+  for (int added : {33, 21, 60, 5, 41, 22}) {
+    nodes.insert(std::lower_bound(nodes.begin(), nodes.end(), added), added);
+    if (nodes.size() > 4) nodes.erase(nodes.begin());
+    const solve::Probes probes{nodes, {&wide}};
+    const core::MatX S = selection(body, probes);
+    const core::VecX f = core::VecX::LinSpaced(probes.size(), -1.0, 2.0);
+    auto motion = body.tissue.free_motion(rest, rest.u, {0.01, 0.01, false});
+    motion.half = body.tissue.begin(b);
+    const core::VecX free = inverse * dense_load;
+    const core::VecX read = body.tissue.at(probes, motion, rest.u);
+    EXPECT_LT((read - S * free).norm(), 1e-10 * free.norm() * S.norm());
+    const core::VecX exact = free + inverse * (S.transpose() * f);
+    const core::VecX u = body.space.gather(body.tissue.finish(motion, probes, f)).value;
+    EXPECT_LT((u - exact).norm(), 1e-10 * exact.norm());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Providers, Compliance,
-                         ::testing::Values(solve::ColumnSolver::one_by_one,
-                                           solve::ColumnSolver::blocked));
+                         ::testing::Values(solve::Provider::supernodal, solve::Provider::ksp,
+                                           solve::Provider::ksp_block));
 
 TEST(LinearTissue, OneOperatorPerDistinctStepLength)
 {
-  test::Body body({2, 2, 2, core::Vec3(0.1, 0.1, 0.1)}, held(solve::ColumnSolver::blocked));
+  test::Body body({2, 2, 2, core::Vec3(0.1, 0.1, 0.1)}, held(solve::Provider::automatic));
   const tissue::TissueState rest = body.tissue.at_rest();
   for (double h : {0.01, 0.005, 0.01, 0.005, 0.01})
     body.tissue.free_motion(rest, rest.u, {h, h, false});

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "solve/step_solver.hpp"
+
+namespace trocar::solve {
+
+/// Whole solves by PETSc, on any rank count.
+class KspStepSolver final : public StepSolver
+{
+ public:
+  KspStepSolver(const StepSolverParts& parts, ColumnSolver columns, std::string reason);
+
+  void set_operator(const fem::BlockMatrix& values) override { system_.set_operator(values); }
+  HalfSolution begin(const OwnedField& b) override { return {system_.solve(b).value}; }
+  core::VecX at(const Probes& probes, const HalfSolution& half) override;
+  OwnedField finish(const HalfSolution& half, const Probes& probes, const core::VecX& f) override;
+  IsolatedCompliance& compliance() override { return compliance_; }
+  std::string describe() const override { return system_.describe() + reason_; }
+
+ private:
+  const fem::Space* space_;
+  const fem::Dirichlet* fixed_;
+  LinearSystem system_;
+  KspCompliance compliance_;
+  std::string reason_;
+};
+
+}  // namespace trocar::solve

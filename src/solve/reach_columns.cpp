@@ -1,0 +1,197 @@
+#include "solve/reach_columns.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace trocar::solve {
+
+using core::MatX;
+using core::VecX;
+
+/// Unit columns that are eliminated together, sorted by position: those that are not zero in a
+/// supernode are then neighbours, because the tree is in postorder.
+struct ReachColumns::Batch
+{
+  std::vector<int> position, slot;
+  std::vector<int> reach;  ///< supernodes on the paths to the root, ascending
+  std::vector<int> place;  ///< in `reach`, by supernode; -1 elsewhere
+  std::vector<int> low;    ///< first active column, by place
+  std::vector<int> high;   ///< one past the last
+  std::vector<MatX> Y;     ///< (columns of the supernode x active columns), by place
+};
+
+ReachColumns::ReachColumns(const SupernodalFactor& factor) : factor_(&factor)
+{
+  clear();
+}
+
+void ReachColumns::clear()
+{
+  pieces_.assign(static_cast<std::size_t>(factor_->supernodes()), {});
+  touched_.clear();
+  C_.resize(0, 0);
+  size_ = 0;
+}
+
+Eigen::Map<const MatX> ReachColumns::values(int s) const
+{
+  const Piece& piece = pieces_[static_cast<std::size_t>(s)];
+  return {piece.value.data(), factor_->supernode(s).columns,
+          static_cast<Eigen::Index>(piece.slot.size())};
+}
+
+void ReachColumns::enlarge(int count)
+{
+  size_ += count;
+  if (C_.rows() >= size_) return;
+  const Eigen::Index room = std::max<Eigen::Index>(size_, 3 * C_.rows() / 2);
+  C_.conservativeResizeLike(MatX::Zero(room, room));
+}
+
+/// Keeps Y as columns of X in one supernode. `products` = Yᵀ X with the columns already there.
+void ReachColumns::append(int s, const MatX& Y, const int* slots, const MatX& products)
+{
+  Piece& piece = pieces_[static_cast<std::size_t>(s)];
+  for (Eigen::Index k = 0; k < products.cols(); ++k)
+    for (Eigen::Index j = 0; j < products.rows(); ++j) {
+      const int old = piece.slot[static_cast<std::size_t>(k)];
+      C_(slots[j], old) += products(j, k);
+      C_(old, slots[j]) += products(j, k);
+    }
+  if (piece.slot.empty()) touched_.insert(std::lower_bound(touched_.begin(), touched_.end(), s), s);
+  piece.value.insert(piece.value.end(), Y.data(), Y.data() + Y.size());
+  piece.slot.insert(piece.slot.end(), slots, slots + Y.cols());
+}
+
+/// One supernode of a batch: solve with its diagonal block, update its ancestors, multiply.
+void ReachColumns::eliminate(int s, Batch& batch)
+{
+  const SupernodalFactor::Supernode node = factor_->supernode(s);
+  const auto place = static_cast<std::size_t>(batch.place[static_cast<std::size_t>(s)]);
+  MatX& Y = batch.Y[place];
+  const int low = batch.low[place];
+  const Eigen::Index active = Y.cols();
+  const auto L = node.block();
+  L.topRows(node.columns).triangularView<Eigen::Lower>().solveInPlace(Y);
+  const MatX update = L.bottomRows(node.below()) * Y;
+  const int* row = node.row + node.columns;
+  for (int i = 0; i < node.below();) {
+    const int t = factor_->supernode_at(row[i]);
+    const SupernodalFactor::Supernode above = factor_->supernode(t);
+    int end = i;
+    while (end < node.below() && row[end] < above.first + above.columns) ++end;
+    const auto to = static_cast<std::size_t>(batch.place[static_cast<std::size_t>(t)]);
+    MatX& target = batch.Y[to];
+    const int shift = low - batch.low[to];
+    for (Eigen::Index j = 0; j < active; ++j)
+      for (int k = i; k < end; ++k) target(row[k] - above.first, shift + j) -= update(k, j);
+    i = end;
+  }
+  const int* slots = batch.slot.data() + low;
+  MatX own = MatX::Zero(active, active);
+  own.selfadjointView<Eigen::Lower>().rankUpdate(Y.transpose());
+  for (Eigen::Index j = 0; j < active; ++j) {
+    C_(slots[j], slots[j]) += own(j, j);
+    for (Eigen::Index i = j + 1; i < active; ++i) {
+      C_(slots[i], slots[j]) += own(i, j);
+      C_(slots[j], slots[i]) += own(i, j);
+    }
+  }
+  append(s, Y, slots, Y.transpose() * values(s));
+  Y.resize(0, 0);
+}
+
+void ReachColumns::add_units(const std::vector<int>& positions)
+{
+  Batch batch;
+  std::vector<int> order;
+  for (int k = 0; k < static_cast<int>(positions.size()); ++k)
+    if (positions[static_cast<std::size_t>(k)] >= 0) order.push_back(k);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return positions[static_cast<std::size_t>(a)] < positions[static_cast<std::size_t>(b)];
+  });
+  for (int k : order) {
+    batch.position.push_back(positions[static_cast<std::size_t>(k)]);
+    batch.slot.push_back(size_ + k);
+  }
+  enlarge(static_cast<int>(positions.size()));
+  batch.place.assign(static_cast<std::size_t>(factor_->supernodes()), -1);
+  for (int p : batch.position)
+    for (int s = factor_->supernode_at(p); s >= 0 && batch.place[static_cast<std::size_t>(s)] < 0;
+         s = factor_->parent(s)) {
+      batch.place[static_cast<std::size_t>(s)] = 0;
+      batch.reach.push_back(s);
+    }
+  std::sort(batch.reach.begin(), batch.reach.end());
+  for (std::size_t k = 0; k < batch.reach.size(); ++k)
+    batch.place[static_cast<std::size_t>(batch.reach[k])] = static_cast<int>(k);
+  const auto first_from = [&](int position) {
+    return static_cast<int>(
+        std::lower_bound(batch.position.begin(), batch.position.end(), position) -
+        batch.position.begin());
+  };
+  for (int s : batch.reach) {
+    const SupernodalFactor::Supernode node = factor_->supernode(s);
+    batch.low.push_back(first_from(node.first));
+    batch.high.push_back(first_from(node.first + node.columns));
+  }
+  for (std::size_t k = 0; k < batch.reach.size(); ++k) {  // children before parents
+    const int parent = factor_->parent(batch.reach[k]);
+    if (parent < 0) continue;
+    int& low = batch.low[static_cast<std::size_t>(batch.place[static_cast<std::size_t>(parent)])];
+    low = std::min(low, batch.low[k]);
+  }
+  for (std::size_t k = 0; k < batch.reach.size(); ++k) {
+    const SupernodalFactor::Supernode node = factor_->supernode(batch.reach[k]);
+    batch.Y.push_back(MatX::Zero(node.columns, batch.high[k] - batch.low[k]));
+    for (int j = first_from(node.first); j < batch.high[k]; ++j)
+      batch.Y.back()(batch.position[static_cast<std::size_t>(j)] - node.first, j - batch.low[k]) =
+          1.0;
+  }
+  for (int s : batch.reach) eliminate(s, batch);
+}
+
+void ReachColumns::add_dense(const VecX& vector)
+{
+  const int slot = size_;
+  enlarge(1);
+  VecX y = vector;
+  factor_->forward(y);
+  C_(slot, slot) = y.squaredNorm();
+  for (int s = 0; s < factor_->supernodes(); ++s) {
+    const SupernodalFactor::Supernode node = factor_->supernode(s);
+    const MatX own = y.segment(node.first, node.columns);
+    if (!own.isZero(0.0)) append(s, own, &slot, own.transpose() * values(s));
+  }
+}
+
+VecX ReachColumns::at(const VecX& y) const
+{
+  VecX result = VecX::Zero(size_);
+  for (int s : touched_) {
+    const SupernodalFactor::Supernode node = factor_->supernode(s);
+    const VecX part = values(s).transpose() * y.segment(node.first, node.columns);
+    const Piece& piece = pieces_[static_cast<std::size_t>(s)];
+    for (std::size_t k = 0; k < piece.slot.size(); ++k)
+      result[piece.slot[k]] += part[static_cast<Eigen::Index>(k)];
+  }
+  return result;
+}
+
+void ReachColumns::push(const VecX& f, VecX& y) const
+{
+  for (int s : touched_) {
+    const SupernodalFactor::Supernode node = factor_->supernode(s);
+    const VecX mine = f(pieces_[static_cast<std::size_t>(s)].slot);
+    y.segment(node.first, node.columns).noalias() += values(s) * mine;
+  }
+}
+
+double ReachColumns::bytes() const
+{
+  double count = 0.0;
+  for (const Piece& piece : pieces_) count += static_cast<double>(piece.value.size());
+  return 8.0 * count;
+}
+
+}  // namespace trocar::solve

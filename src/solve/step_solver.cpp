@@ -1,0 +1,45 @@
+#include "solve/step_solver.hpp"
+
+#include <fstream>
+
+#include "solve/ksp_step_solver.hpp"
+#include "solve/supernodal_step_solver.hpp"
+
+namespace trocar::solve {
+namespace {
+
+constexpr double part_of_memory = 0.7;  ///< what a factor may take of what is free
+
+/// Memory that this machine has to give [B]; 0 when it does not say.
+double available_memory()
+{
+  std::ifstream info("/proc/meminfo");
+  std::string word;
+  while (info >> word)
+    if (word == "MemAvailable:") {
+      double kilobytes = 0.0;
+      info >> kilobytes;
+      return 1024.0 * kilobytes;
+    }
+  return 0.0;
+}
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolverParts& parts)
+{
+  if (provider == Provider::ksp)
+    return std::make_unique<KspStepSolver>(parts, ColumnSolver::one_by_one, "");
+  if (provider == Provider::ksp_block)
+    return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked, "");
+  auto solver = std::make_unique<SupernodalStepSolver>(parts);
+  if (provider == Provider::supernodal) return solver;
+  const double limit = part_of_memory * parts.space.comm().max(available_memory());
+  if (limit <= 0.0 || solver->factor_bytes() <= limit) return solver;
+  return std::make_unique<KspStepSolver>(
+      parts, ColumnSolver::blocked,
+      ", because a supernodal factor would take " +
+          std::to_string(static_cast<long long>(solver->factor_bytes() / 1e6)) + " MB");
+}
+
+}  // namespace trocar::solve

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solve/isolated_compliance.hpp"
+
+namespace trocar::solve {
+
+/// How the tissue's operator is solved with and its isolated compliance made.
+enum class Provider {
+  automatic,  ///< `supernodal` when its factor fits in memory and no PETSc solver was asked for
+  supernodal,
+  ksp,       ///< one PETSc solve per isolated dof, the paper's route
+  ksp_block  ///< PETSc solves with many right-hand sides
+};
+
+/// A⁻¹ b on its way: with a factor only the forward half is done, so that the forces of the
+/// constraints can join before the backward half.
+struct HalfSolution
+{
+  core::VecX value;
+};
+
+/// One operator of the tissue in the order of a step: solve b, read the answer at the probes, get
+/// the compliance of the probes, finish with forces on them. All calls are collective; all answers
+/// but fields are equal on every rank.
+class StepSolver
+{
+ public:
+  virtual ~StepSolver() = default;
+
+  /// Takes new values and factors. Failure (70) for an operator that is not positive definite.
+  virtual void set_operator(const fem::BlockMatrix& values) = 0;
+  /// b [N], zero on fixed dofs.
+  virtual HalfSolution begin(const OwnedField& b) = 0;
+  /// S A⁻¹ b [m] by slot of the probes; 0 on fixed dofs.
+  virtual core::VecX at(const Probes& probes, const HalfSolution& half) = 0;
+  /// A⁻¹ (b + Sᵀ f) [m], f [N] by slot of the probes. No probes: A⁻¹ b.
+  virtual OwnedField finish(const HalfSolution& half, const Probes& probes,
+                            const core::VecX& f) = 0;
+  virtual IsolatedCompliance& compliance() = 0;
+  /// For the log and the record.
+  virtual std::string describe() const = 0;
+};
+
+/// What a step solver is made from. Borrows everything.
+struct StepSolverParts
+{
+  const fem::Space& space;
+  const fem::BlockPattern& pattern;
+  const fem::Dirichlet& fixed;
+  const std::vector<core::Vec3>& x;  ///< reference positions of all nodes in file order [m]
+  LinearSettings linear;
+  core::Ledger& ledger;
+};
+
+/// The solver of a provider. `automatic` says in `describe` why it fell back. Collective.
+std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolverParts& parts);
+
+}  // namespace trocar::solve

@@ -1,0 +1,142 @@
+#include "solve/supernodal_factor.hpp"
+
+#include <cholmod.h>
+
+#include <algorithm>
+
+#include "core/failure.hpp"
+
+namespace trocar::solve {
+
+/// CHOLMOD's objects, freed in the right order.
+struct SupernodalFactor::Handles
+{
+  Handles() { cholmod_start(&common); }
+  ~Handles()
+  {
+    cholmod_free_factor(&L, &common);
+    cholmod_free_sparse(&A, &common);
+    cholmod_finish(&common);
+  }
+  Handles(const Handles&) = delete;
+  Handles& operator=(const Handles&) = delete;
+
+  const int* integers(const void* array) const { return static_cast<const int*>(array); }
+
+  cholmod_common common;
+  cholmod_sparse* A = nullptr;
+  cholmod_factor* L = nullptr;
+};
+
+SupernodalFactor::SupernodalFactor(SymmetricPattern pattern, const std::vector<int>& order)
+    : handles_(std::make_unique<Handles>())
+{
+  cholmod_common& common = handles_->common;
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  common.nmethods = 1;
+  common.method[0].ordering = CHOLMOD_GIVEN;
+  common.postorder = true;
+  common.print = 0;
+  const auto n = static_cast<std::size_t>(pattern.size());
+  handles_->A =
+      cholmod_allocate_sparse(n, n, pattern.row.size(), true, true, 1, CHOLMOD_REAL, &common);
+  if (!handles_->A) throw core::solver_error("no memory for the tissue matrix");
+  std::copy(pattern.start.begin(), pattern.start.end(), static_cast<int*>(handles_->A->p));
+  std::copy(pattern.row.begin(), pattern.row.end(), static_cast<int*>(handles_->A->i));
+  std::vector<int> given = order;
+  handles_->L = cholmod_analyze_p(handles_->A, given.data(), nullptr, 0, &common);
+  if (!handles_->L)
+    throw core::solver_error("the analysis of the tissue matrix failed (CHOLMOD status " +
+                             std::to_string(common.status) + ")");
+  position_.resize(n);
+  const int* permutation = handles_->integers(handles_->L->Perm);
+  for (std::size_t k = 0; k < n; ++k)
+    position_[static_cast<std::size_t>(permutation[k])] = static_cast<int>(k);
+  at_.resize(n);
+  for (int s = 0; s < supernodes(); ++s) {
+    const Supernode node = supernode(s);
+    std::fill_n(at_.begin() + node.first, node.columns, s);
+  }
+  for (int s = 0; s < supernodes(); ++s) {
+    const Supernode node = supernode(s);
+    parent_.push_back(node.below() > 0 ? supernode_at(node.row[node.columns]) : -1);
+  }
+}
+
+SupernodalFactor::~SupernodalFactor() = default;
+SupernodalFactor::SupernodalFactor(SupernodalFactor&&) noexcept = default;
+
+void SupernodalFactor::factorise(const std::vector<double>& values)
+{
+  cholmod_common& common = handles_->common;
+  std::copy(values.begin(), values.end(), static_cast<double*>(handles_->A->x));
+  const bool done = cholmod_factorize(handles_->A, handles_->L, &common) != 0;
+  if (common.status == CHOLMOD_OUT_OF_MEMORY)
+    throw core::solver_error("no memory for the factor of the tissue (" +
+                             std::to_string(static_cast<long long>(bytes() / 1e6)) +
+                             " MB): use -compliance_provider ksp with an iterative solver");
+  if (!done || common.status == CHOLMOD_NOT_POSDEF || handles_->L->minor < handles_->L->n)
+    throw core::solver_error(
+        "the tissue's operator is not positive definite: a body without supports (-fix), or "
+        "elements that are nearly flat");
+}
+
+double SupernodalFactor::bytes() const
+{
+  return 8.0 * static_cast<double>(handles_->L->xsize);
+}
+
+double SupernodalFactor::flops() const
+{
+  return handles_->common.fl;
+}
+
+int SupernodalFactor::supernodes() const
+{
+  return static_cast<int>(handles_->L->nsuper);
+}
+
+SupernodalFactor::Supernode SupernodalFactor::supernode(int s) const
+{
+  const cholmod_factor& L = *handles_->L;
+  const int* super = handles_->integers(L.super);
+  const int* row_start = handles_->integers(L.pi);
+  const int* value_start = handles_->integers(L.px);
+  const double* values = static_cast<const double*>(L.x);
+  return {super[s], super[s + 1] - super[s], row_start[s + 1] - row_start[s],
+          handles_->integers(L.s) + row_start[s], values ? values + value_start[s] : nullptr};
+}
+
+void SupernodalFactor::forward(core::VecX& b) const
+{
+  core::VecX update;
+  for (int s = 0; s < supernodes(); ++s) {
+    const Supernode node = supernode(s);
+    const auto L = node.block();
+    auto own = b.segment(node.first, node.columns);
+    L.topRows(node.columns).triangularView<Eigen::Lower>().solveInPlace(own);
+    if (node.below() == 0) continue;
+    update.noalias() = L.bottomRows(node.below()) * own;
+    const int* row = node.row + node.columns;
+    for (int i = 0; i < node.below(); ++i) b[row[i]] -= update[i];
+  }
+}
+
+void SupernodalFactor::backward(core::VecX& y) const
+{
+  core::VecX above;
+  for (int s = supernodes() - 1; s >= 0; --s) {
+    const Supernode node = supernode(s);
+    const auto L = node.block();
+    auto own = y.segment(node.first, node.columns);
+    if (node.below() > 0) {
+      above.resize(node.below());
+      const int* row = node.row + node.columns;
+      for (int i = 0; i < node.below(); ++i) above[i] = y[row[i]];
+      own.noalias() -= L.bottomRows(node.below()).transpose() * above;
+    }
+    L.topRows(node.columns).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  }
+}
+
+}  // namespace trocar::solve

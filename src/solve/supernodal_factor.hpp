@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/math.hpp"
+
+namespace trocar::solve {
+
+/// Upper triangle of a symmetric matrix by compressed columns, rows ascending.
+struct SymmetricPattern
+{
+  std::vector<int> start;  ///< by column, one more than columns
+  std::vector<int> row;
+
+  int size() const { return static_cast<int>(start.size()) - 1; }
+};
+
+/// A = L Lᵀ by supernodes (CHOLMOD), and the sweeps and the structure that isolated compliance
+/// needs. "Position" is a place in the factor's own order. Serial.
+class SupernodalFactor
+{
+ public:
+  /// Analyses the pattern in the given order (dof at each place). Failure (70) when it does not fit
+  /// in memory.
+  SupernodalFactor(SymmetricPattern pattern, const std::vector<int>& order);
+  ~SupernodalFactor();
+  SupernodalFactor(SupernodalFactor&&) noexcept;
+
+  /// Takes values (by entry of the pattern) and factors. Failure (70) when A is not positive
+  /// definite.
+  void factorise(const std::vector<double>& values);
+
+  int size() const { return static_cast<int>(position_.size()); }
+  int position(int dof) const { return position_[static_cast<std::size_t>(dof)]; }
+  double bytes() const;  ///< of L [B], known from the analysis
+  double flops() const;  ///< of one factorisation
+
+  /// One supernode: its dense columns of L, diagonal block first, and the positions of its rows.
+  struct Supernode
+  {
+    int first;    ///< position of its first column
+    int columns;  ///< as many rows are in the diagonal block
+    int rows;     ///< all of them
+    const int* row;
+    const double* L;  ///< (rows x columns), column-major
+
+    int below() const { return rows - columns; }
+    Eigen::Map<const core::MatX> block() const { return {L, rows, columns}; }
+  };
+  int supernodes() const;
+  Supernode supernode(int s) const;
+  int supernode_at(int position) const { return at_[static_cast<std::size_t>(position)]; }
+  /// The supernode that this one's update goes to first, -1 for a root.
+  int parent(int s) const { return parent_[static_cast<std::size_t>(s)]; }
+
+  void forward(core::VecX& b) const;   ///< b <- L⁻¹ b, by position
+  void backward(core::VecX& y) const;  ///< y <- L⁻ᵀ y, by position
+
+ private:
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+  std::vector<int> position_;  ///< by dof
+  std::vector<int> at_;        ///< supernode by position
+  std::vector<int> parent_;
+};
+
+}  // namespace trocar::solve
