@@ -179,9 +179,10 @@ std::vector<OptionSpec> build_table()
              "solver of the dense constraint problem"),
       positive("constraint_tolerance", "1e-9", "m", "stop at this residual (or step norm)"),
       count("constraint_max_iterations", "1000", 1, "sweeps or factorisations"),
-      count("constraint_direction_max", "1", 1,
-            "times per linearisation that constraint directions follow the bending needle, until "
-            "all gaps are closed; 1 freezes them as in the papers"),
+      count(
+          "constraint_direction_max", "1", 1,
+          "times per linearisation that constraint directions follow the bending needle, at most; "
+          "fewer when the lateral gaps are closed; 1 freezes them as in the papers"),
       choice("constraint_norm", "residual", {"residual", "step"},
              "what pgs and hybrid stop on: the true residual, or the paper's step norm"),
       list(

@@ -113,6 +113,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
   for (const law::Contender& contender : scenario.compare) {
     const std::string at = "constraint/compare/" + contender.name + "/";
     series.insert(series.end(), {{at + "iterations", 0, "1"},
+                                 {at + "failures", 0, "1"},
                                  {at + "residual", 0, "m"},
                                  {at + "seconds", 0, "s"},
                                  {at + "factor_seconds", 0, "s"}});
@@ -177,8 +178,8 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
     row.push_back({value});
   for (std::size_t i = 0; i < simulation.scenario().compare.size(); ++i) {
     const law::Trial trial = report.trials.empty() ? law::Trial{} : report.trials[i];
-    for (double value : {static_cast<double>(trial.iterations), trial.residual, trial.seconds,
-                         trial.factor_seconds})
+    for (double value : {static_cast<double>(trial.iterations), static_cast<double>(trial.failures),
+                         trial.residual, trial.seconds, trial.factor_seconds})
       row.push_back({value});
   }
   for (double value :

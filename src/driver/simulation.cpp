@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/words.hpp"
 #include "law/solve.hpp"
@@ -270,9 +271,10 @@ void Simulation::accept(const Pass& pass, State& next, StepReport& report) const
     NeedleReport& needle = report.needles[i];
     if (!pass.rows.set.empty())
       needle.coupling = insertion_->accept(next.insertions[i], pass.rows.of_needle[i], pass.lambda);
-    if (needle.coupling.yields) {
+    if (needle.coupling.tip != insertion::TipOutcome::holds) {
       const fem::GlobalField u = space_.gather(next.tissue.u);
-      insertion_->cut(next.insertions[i], next.needles[i].shaft, {scenario_.mesh, *locator_, u});
+      insertion_->settle(next.insertions[i], needle.coupling, next.needles[i].shaft,
+                         {scenario_.mesh, *locator_, u});
     }
     needle.tip = next.needles[i].shaft.tip();
     needle.depth = insertion_->depth(next.insertions[i]);

@@ -173,25 +173,13 @@ CouplingReport Insertion::accept(InsertionState& state, const CouplingRows& rows
   for (std::size_t k = 0; k < rows.points.size(); ++k)
     accept_point(state.points[k], rows.points[k], multipliers, report);
   if (rows.tip.axial < 0) return report;
-  const TipOutcome outcome =
-      accept_tip(state.tip, rows.tip, multipliers, settings_.stick_tolerance);
-  const double delta = multipliers.delta[rows.tip.axial];
+  report.tip = accept_tip(state.tip, rows.tip, multipliers, settings_.stick_tolerance);
   report.tip_force = state.tip.lambda[2];
-  report.cutting_work = report.tip_force * delta;
+  report.tip_gap = multipliers.delta[rows.tip.axial];
+  report.cutting_work = report.tip_force * report.tip_gap;
   if (rows.tip.lateral >= 0)
     report.friction_work += multipliers.lambda.segment<2>(rows.tip.lateral)
                                 .dot(multipliers.delta.segment<2>(rows.tip.lateral));
-  report.yields = outcome == TipOutcome::yields;
-  if (outcome != TipOutcome::apart) return report;
-  state.tip.pressed = false;
-  if (state.phase == Phase::contact) {
-    state.phase = Phase::outside;
-    const int first_id = state.path.first_id;
-    state.path = {};
-    state.path.first_id = first_id;
-  } else {
-    state.tip_arc = state.path.length() - delta;
-  }
   return report;
 }
 

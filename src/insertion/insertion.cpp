@@ -6,38 +6,6 @@
 #include "core/failure.hpp"
 
 namespace trocar::insertion {
-namespace {
-
-/// First and last tet of the path: where the needle goes in, and where its end is.
-int first_tet(const Path& path)
-{
-  for (const Piece& piece : path.pieces)
-    if (piece.tet >= 0) return piece.tet;
-  return -1;
-}
-int last_tet(const Path& path)
-{
-  for (auto piece = path.pieces.rbegin(); piece != path.pieces.rend(); ++piece)
-    if (piece->tet >= 0) return piece->tet;
-  return -1;
-}
-
-/// Outward normal of the tet's face nearest to X.
-Vec3 face_normal(const mesh::Mesh& mesh, int tet, const Vec3& X)
-{
-  const auto corner = mesh::corners(mesh, tet);
-  const Eigen::Vector4d weight = mesh::barycentric(corner, X);
-  Eigen::Index opposite = 0;
-  weight.minCoeff(&opposite);
-  const auto at = [&](Eigen::Index k) {
-    return corner[static_cast<std::size_t>((opposite + k) % 4)];
-  };
-  const Vec3 normal = (at(2) - at(1)).cross(at(3) - at(1)).normalized();
-  return normal.dot(at(0) - at(1)) > 0.0 ? Vec3(-normal) : normal;
-}
-
-}  // namespace
-
 Insertion::Insertion(const mesh::Mesh& mesh, const mesh::Locator& locator,
                      InsertionSettings settings)
     : mesh_(&mesh),
@@ -76,8 +44,8 @@ InsertionState Insertion::start(const needle::Needle& needle) const
 InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft& predicted,
                                   const Deformed& tissue) const
 {
-  if (old.phase == Phase::contact) return keep_contact(old, predicted, tissue);
-  if (old.path.empty()) return enter(old, predicted, tissue);
+  if (old.phase == Phase::contact) return old;  // what becomes of it the laws decide
+  if (first_tet(old.path) < 0) return enter(old, predicted, tissue);
 
   const Vec3 tip = predicted.tip() + lead(old, predicted, tissue);
   const auto inside = tissue.reference_place(tip, old.path.vertex.back());
@@ -102,7 +70,7 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
   }
   // A tip outside the tissue in front of the entry has left the channel, whatever the map says.
   if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
-  press(next, arc);
+  press(next, arc, tissue);
   if (next.tip.pressed) arc = next.path.length();
   next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;
   drop_points_ahead(next, arc);
@@ -113,11 +81,18 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
 bool Insertion::astray(const InsertionState& state, const needle::Shaft& shaft,
                        const Deformed& tissue) const
 {
-  if (state.phase == Phase::contact || state.phase == Phase::inserted) return false;
+  if (state.phase == Phase::inserted) return false;
+  // The tip itself may touch the surface, and stand in the dent it makes.
+  double clear = 1e-3 * shaft.length;
+  if (state.phase == Phase::contact) {
+    const double edge = arc_tolerance(*mesh_, state.tip.tet) / relative_tolerance;
+    clear = 2.0 * std::max(settings_.tip.radius, edge);
+  }
   for (std::size_t e = 0; e + 1 < shaft.x.size(); ++e) {
-    // The tip itself may touch the surface.
-    const double end = e + 2 == shaft.x.size() ? 0.99 : 1.0;
-    if (tissue.meets(shaft.x[e], shaft.x[e] + end * (shaft.x[e + 1] - shaft.x[e]))) return true;
+    const double begin = static_cast<double>(e) * shaft.element_length();
+    const double part = std::min(1.0, (shaft.length - clear - begin) / shaft.element_length());
+    if (part > 0.0 && tissue.meets(shaft.x[e], shaft.x[e] + part * (shaft.x[e + 1] - shaft.x[e])))
+      return true;
   }
   return false;
 }
@@ -132,124 +107,17 @@ InsertionState Insertion::enter(const InsertionState& old, const needle::Shaft& 
   next.tip.punctures = old.tip.punctures;
   next.path.first_id = old.path.first_id + static_cast<int>(old.path.sites.size());
   grow(next.path, *entry, *mesh_, *locator_, settings_.placement);
-  const int tet = locator_->tet_at(*entry);
-  if (tet >= 0) {
-    // What is cut with a force is not entered without it.
-    const auto region = static_cast<std::size_t>(mesh_->region[static_cast<std::size_t>(tet)]);
-    next.tip.threshold =
-        std::max(membranes_.threshold(-1, tet, *entry), settings_.tip.cutting[region]);
-  }
-  if (next.tip.threshold > 0.0) {
+  if (border(-1, locator_->tet_at(*entry), *entry) > 0.0) {
     touch_surface(next, *entry);
+    next.tip.offset = tissue.position(next.tip.hold) - tissue.place(*entry, next.tip.tet);
     return next;
   }
   grow_to(next, *X);
   if (first_tet(next.path) < 0) return old;
   next.phase = Phase::inserted;
-  press(next, next.path.length());
+  press(next, next.path.length(), tissue);
   add_points_behind(next, next.path.length(), predicted.length);
   return next;
-}
-
-/// On a surface the tip stays where it touched, or goes where it slid.
-InsertionState Insertion::keep_contact(const InsertionState& old, const needle::Shaft& predicted,
-                                       const Deformed& tissue) const
-{
-  InsertionState next = old;
-  if (!old.tip.slid) return next;
-  const auto entry = tissue.entry(predicted.x.front(), predicted.tip());
-  if (entry && locator_->tet_at(*entry) >= 0) {
-    next.path.vertex.front() = *entry;
-    touch_surface(next, *entry);
-  }
-  return next;
-}
-
-void Insertion::touch_surface(InsertionState& state, const Vec3& X) const
-{
-  const int tet = locator_->tet_at(X);
-  const double edge = arc_tolerance(*mesh_, tet) / relative_tolerance;
-  const Vec3 normal = face_normal(*mesh_, tet, X);
-  state.phase = Phase::contact;
-  state.tip.pressed = true;
-  state.tip.tet = tet;
-  state.tip.hold =
-      tip_support(*mesh_, *locator_, X, tet, std::max(settings_.tip.radius, edge), &normal);
-}
-
-/// Grows the path towards X, but not through a membrane: there it ends, and the membrane's
-/// threshold is what the tip meets. One that the path already ends at has been pierced.
-void Insertion::grow_to(InsertionState& state, const Vec3& X) const
-{
-  state.tip.threshold = 0.0;
-  const Path before = state.path;
-  grow(state.path, X, *mesh_, *locator_, settings_.placement);
-  if (!membranes_.any()) return;
-  for (std::size_t i = std::max<std::size_t>(before.pieces.size(), 1); i < state.path.pieces.size();
-       ++i) {
-    const Piece& into = state.path.pieces[i];
-    if (into.begin <= before.length() * (1.0 + 1e-12)) continue;
-    const double part = (into.begin - before.length()) / (X - before.vertex.back()).norm();
-    const Vec3 border = before.vertex.back() + part * (X - before.vertex.back());
-    const double threshold = membranes_.threshold(state.path.pieces[i - 1].tet, into.tet, border);
-    if (threshold <= 0.0) continue;
-    state.path = before;
-    grow(state.path, border, *mesh_, *locator_, settings_.placement);
-    state.tip.threshold = threshold;
-    return;
-  }
-}
-
-/// Force at which the tissue at the end of the path yields [N]; 0: nothing resists.
-double Insertion::resistance(const InsertionState& state) const
-{
-  if (state.tip.threshold > 0.0 || state.path.pieces.empty()) return state.tip.threshold;
-  const int tet = state.path.pieces.back().tet;
-  if (tet < 0) return 0.0;
-  return settings_.tip
-      .cutting[static_cast<std::size_t>(mesh_->region[static_cast<std::size_t>(tet)])];
-}
-
-/// A tip that comes to the end of its path where something resists is pressed from then on, until
-/// it comes apart.
-void Insertion::press(InsertionState& state, double arc) const
-{
-  const int tet = last_tet(state.path);
-  const double tolerance = arc_tolerance(*mesh_, tet);
-  const bool at_end = state.tip.pressed || arc >= state.path.length() - tolerance;
-  state.tip.pressed = at_end && resistance(state) > 0.0;
-  if (!state.tip.pressed) return;
-  const Vec3& X = state.path.vertex.back();
-  const double edge = tolerance / relative_tolerance;
-  state.tip.tet = tet;
-  state.tip.hold =
-      tip_support(*mesh_, *locator_, X, tet, std::max(settings_.tip.radius, edge), nullptr);
-}
-
-/// How far along the shaft the place a pressed tip stands on lies ahead of the mean of its support:
-/// what the tip's gap is measured by is that mean, so its place in the tissue is the tip plus this.
-Vec3 Insertion::lead(const InsertionState& state, const needle::Shaft& shaft,
-                     const Deformed& tissue) const
-{
-  if (!state.tip.pressed) return Vec3::Zero();
-  const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
-  const Vec3 ahead =
-      tissue.place(state.path.vertex.back(), state.tip.tet) - tissue.position(state.tip.hold);
-  return tangent * tangent.dot(ahead);
-}
-
-void Insertion::cut(InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const
-{
-  const Vec3 tip = shaft.tip() + lead(state, shaft, tissue);
-  const auto inside = tissue.reference_place(tip, state.path.vertex.back());
-  const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, state.tip.tet);
-  if (state.tip.threshold > 0.0) ++state.tip.punctures;
-  grow_to(state, X);
-  state.phase = Phase::inserted;
-  state.tip.pressed = false;
-  press(state, state.path.length());
-  state.tip_arc = state.path.length();
-  add_points_behind(state, state.path.length(), shaft.length);
 }
 
 bool Insertion::passed(const InsertionState& state, std::size_t site, double arc) const

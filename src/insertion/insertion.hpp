@@ -87,8 +87,9 @@ struct CouplingReport
   double shaft_friction = 0.0;  ///< Σ axial λ [N], > 0 resists insertion
   double friction_work = 0.0;   ///< Σ λ δ of the axial rows [J], <= 0 (η law: no such bound)
   double tip_force = 0.0;       ///< axial λ on the tip [N], >= 0
+  double tip_gap = 0.0;         ///< δ of the tip's axial row [m], < 0 where it advanced
   double cutting_work = 0.0;    ///< λ δ of the tip's axial row [J], <= 0
-  bool yields = false;          ///< the tissue ahead of the tip gave way: call `cut`
+  TipOutcome tip = TipOutcome::holds;  ///< anything else: call `settle`
 };
 
 /// The coupling of needles and tissue: path, coupling points and their rows.
@@ -123,9 +124,11 @@ class Insertion
   CouplingReport accept(InsertionState& state, const CouplingRows& rows,
                         const law::Multipliers& multipliers) const;
 
-  /// Where the tissue ahead of the tip yielded, the path grows by the tip's advance, up to the next
-  /// membrane; `shaft` and `tissue` as they are at the end of the step.
-  void cut(InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
+  /// What the tip did in the step, once shaft and tissue are where they end: where the tissue
+  /// yielded the path grows by the tip's advance, up to the next border; on a surface it touches
+  /// where it slid to; a tip that came apart is where it is.
+  void settle(InsertionState& state, const CouplingReport& report, const needle::Shaft& shaft,
+              const Deformed& tissue) const;
 
   /// Depth: length of the inserted path that lies in tissue [m].
   double depth(const InsertionState& state) const;
@@ -137,12 +140,13 @@ class Insertion
  private:
   InsertionState enter(const InsertionState& old, const needle::Shaft& predicted,
                        const Deformed& tissue) const;
-  InsertionState keep_contact(const InsertionState& old, const needle::Shaft& predicted,
-                              const Deformed& tissue) const;
+  double border(int from, int to, const Vec3& X) const;
   void touch_surface(InsertionState& state, const Vec3& X) const;
+  void leave_surface(InsertionState& state) const;
+  bool stand(InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
   void grow_to(InsertionState& state, const Vec3& X) const;
   double resistance(const InsertionState& state) const;
-  void press(InsertionState& state, double arc) const;
+  void press(InsertionState& state, double arc, const Deformed& tissue) const;
   Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;

@@ -1,6 +1,7 @@
 #include "insertion/membranes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trocar::insertion {
 

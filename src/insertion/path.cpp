@@ -70,7 +70,8 @@ void add_pieces(Path& path, const std::vector<Passage>& passages,
 {
   std::vector<double> cuts{0.0};
   for (const Crossing& c : crossings)
-    if (c.t > cuts.back() && c.t < 1.0) cuts.push_back(c.t);
+    // What is closer to an end than the tolerance is that end: no sliver of a piece.
+    if (c.t > cuts.back() + c.tolerance && c.t < 1.0 - c.tolerance) cuts.push_back(c.t);
   cuts.push_back(1.0);
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
@@ -153,6 +154,20 @@ double tissue_length(const Path& path, double arc)
   for (const Piece& piece : path.pieces)
     if (piece.tet >= 0) length += std::max(0.0, std::min(piece.end, arc) - piece.begin);
   return length;
+}
+
+int first_tet(const Path& path)
+{
+  for (const Piece& piece : path.pieces)
+    if (piece.tet >= 0) return piece.tet;
+  return -1;
+}
+
+int last_tet(const Path& path)
+{
+  for (auto piece = path.pieces.rbegin(); piece != path.pieces.rend(); ++piece)
+    if (piece->tet >= 0) return piece->tet;
+  return -1;
 }
 
 bool straight(const Path& path)

@@ -70,6 +70,10 @@ double arc_nearest(const Path& path, const Vec3& X);
 /// Distance of X from the path itself [m].
 double distance(const Path& path, const Vec3& X);
 
+/// First and last tet of the path, where the needle goes in and where its end is; -1: in none.
+int first_tet(const Path& path);
+int last_tet(const Path& path);
+
 /// Part of the local edge below which two places are one.
 inline constexpr double relative_tolerance = 1e-6;
 

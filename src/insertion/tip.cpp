@@ -80,7 +80,7 @@ TipRows add_tip_rows(const TipState& tip, bool on_surface, double limit, double 
   row.body = body;
   row.point = set.size();
   const needle::ShaftPoint end = needle::shaft_at(shaft, shaft.length);
-  const Vec3 apart = tissue.position(tip.hold) - end.x;
+  const Vec3 apart = tissue.position(tip.hold) - tip.offset - end.x;
   const auto aim = [&](const Vec3& direction, double start) {
     row.direction = direction;
     row.gap = direction.dot(apart);
@@ -112,13 +112,14 @@ TipOutcome accept_tip(TipState& tip, const TipRows& rows, const law::Multipliers
   const double lambda = multipliers.lambda[rows.axial];
   const double delta = multipliers.delta[rows.axial];
   tip.lambda = Vec3(0.0, 0.0, lambda);
-  tip.slid = false;
+  bool slid = false;
   if (rows.lateral >= 0) {
     tip.lambda.head<2>() = multipliers.lambda.segment<2>(rows.lateral);
-    tip.slid = multipliers.delta.segment<2>(rows.lateral).norm() > tolerance;
+    slid = multipliers.delta.segment<2>(rows.lateral).norm() > tolerance;
   }
   if (delta < -tolerance && lambda >= rows.limit * (1.0 - 1e-9)) return TipOutcome::yields;
-  return delta > tolerance ? TipOutcome::apart : TipOutcome::holds;
+  if (delta > tolerance) return TipOutcome::apart;
+  return slid ? TipOutcome::slides : TipOutcome::holds;
 }
 
 }  // namespace trocar::insertion

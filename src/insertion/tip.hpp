@@ -19,13 +19,16 @@ struct TipSettings
 /// How the tip stands to the tissue ahead of it.
 struct TipState
 {
-  bool pressed = false;     ///< at the end of its channel: the tissue there resists
-  double threshold = 0.0;   ///< f_p of the membrane at the channel's end [N], 0: none, or pierced
-  constraint::Anchor hold;  ///< support of the place it presses on
-  int tet = -1;             ///< that holds this place
+  bool pressed = false;        ///< at the end of its channel: the tissue there resists
+  double threshold = 0.0;      ///< f_p of the border the channel ends at [N], 0: none, or pierced
+  bool wall = false;           ///< that border is the tissue's surface, outside or a void's
+  double pierced_arc = -1.0;   ///< where along the path the last border was pierced [m]
+  double pierced_force = 0.0;  ///< and its threshold [N]
+  int tet = -1;                ///< holds the place it presses on
+  constraint::Anchor hold;     ///< support of that place
+  Vec3 offset = Vec3::Zero();  ///< from the tip to the support's mean when the gap is closed [m]
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
-  bool slid = false;           ///< along a surface in the last step
-  int punctures = 0;           ///< membranes pierced so far
+  int punctures = 0;           ///< borders pierced so far
 };
 
 /// Rows the tip got in a set.
@@ -37,7 +40,7 @@ struct TipRows
 };
 
 /// What came of the tip's rows.
-enum class TipOutcome { holds, yields, apart };
+enum class TipOutcome { holds, yields, slides, apart };
 
 /// A mean over the tissue within `radius` of the reference place X: uniform in the ball, or
 /// (`disc`) with Hertz's pressure sqrt(1 - r²/R²) on the disc normal to it. Sample places come in

@@ -18,6 +18,7 @@ struct Contender
 struct Trial
 {
   int iterations = 0;           ///< sweeps or factorisations
+  int failures = 0;             ///< problems it did not solve
   double residual = 0.0;        ///< worst true KKT residual [m]
   double seconds = 0.0;         ///< of the iteration alone
   double factor_seconds = 0.0;  ///< of the pseudo-inverse or factor of W_bb, made before it

@@ -220,6 +220,10 @@ Multipliers solve_fixed(const Problem& problem, const Settings& settings)
                                           away >= interval.half[i] * (1.0 - 1e-9));
     }
   }
+  if (result.converged && at_drawn_bound) {
+    result.converged = false;
+    result.why = "a multiplier grows without bound: rows contradict each other";
+  }
   result.delta = problem.W * result.lambda + problem.g;
   if (!result.delta.allFinite()) {
     result.converged = false;

@@ -278,5 +278,115 @@ TEST(Bevel, SteersAFlexibleNeedleAwayFromItsFace)
   EXPECT_NEAR(deflection(0.1, 0.0, needle::Model::rigid), 0.0, 1e-15);
 }
 
+// The tip cuts with the same force in every step that it goes on, and the work of cutting is that
+// force times the way, at any step; when the base rests nothing is cut.
+TEST(Bevel, CutsWithTheSameWorkAtAnyStep)
+{
+  double work[2];
+  for (int k : {0, 1}) {
+    driver::Scenario scenario = scene(0.0, 0.05);
+    needle::NeedleSettings& needle = scenario.needles[0];
+    needle.model = needle::Model::beam;
+    needle.section = {0.0003, 0.0, 7e10, 0.3};
+    needle.bevel = 1.5;
+    needle.motion.depth = 0.03;
+    needle.motion.hold = 1.0;
+    scenario.time.analysis = driver::Analysis::equilibrium;
+    scenario.time.step = k == 0 ? 0.05 : 0.025;
+    scenario.time.end = 2.0;
+    const test::Run run = test::run(scenario);
+    work[k] = 0.0;
+    for (std::size_t n = 1; n < run.states.size(); ++n) {
+      const auto& coupling = run.reports[n].needles[0].coupling;
+      work[k] -= coupling.cutting_work;
+      if (run.states[n].t < 1.45 && run.states[n - 1].insertions[0].path.length() > 0.0) {
+        EXPECT_NEAR(coupling.tip_force, 0.05, 1e-9);
+      }
+      if (run.states[n].t > 1.6) {
+        EXPECT_NEAR(coupling.cutting_work, 0.0, 1e-9);
+      }
+    }
+  }
+  EXPECT_NEAR(work[0], 0.05 * 0.03, 0.3 * 0.05 * 0.03);
+  EXPECT_NEAR(work[1], work[0], 0.03 * work[0]);
+}
+
+// Turned as a whole, and entered at an angle: the same punctures, depth and force.
+TEST(Puncture, DoesNotDependOnHowTheBodyLies)
+{
+  Vec3 force = Vec3::Zero();
+  double depth = 0.0;
+  for (int turn = 0; turn < 4; ++turn) {
+    driver::Scenario scenario = layered();
+    scenario.insertion.puncture.volume = {0.1, 0.4};
+    scenario.insertion.tip.radius = 0.012;
+    needle::BaseMotion& motion = scenario.needles[0].motion;
+    motion.direction = Vec3(1.0, 0.21, -0.13).normalized();
+    const Vec3 axis = turn * Vec3(0.7, -0.4, 0.9);
+    const core::Mat3 Q = core::rotation_exp(axis);
+    const Vec3 shift = turn * Vec3(0.11, -0.07, 0.05);
+    for (Vec3& x : scenario.mesh.x) x = Q * x + shift;
+    motion.entry = Q * motion.entry + shift;
+    motion.direction = Q * motion.direction;
+    const test::Run run = test::run(scenario);
+    EXPECT_EQ(run.states.back().insertions[0].tip.punctures, 2);
+    const Vec3 mine = Q.transpose() * run.reports.back().needles[0].base.force;
+    if (turn == 0) {
+      force = mine;
+      depth = run.reports.back().needles[0].depth;
+      EXPECT_GT(depth, 0.04);
+    }
+    // The samples of the tip's support lie along the world's axes.
+    EXPECT_LT((mine - force).norm(), 0.01 * force.norm());
+    EXPECT_NEAR(run.reports.back().needles[0].depth, depth, 1e-5);
+  }
+}
+
+TEST(Puncture, IsAskedForAgainAtAnotherPlace)
+{
+  driver::Scenario scenario = scene(0.2, 0.05);
+  scenario.needles[0].motion.trajectory = core::parse_csv(
+      "time,x,y,z\n0,-0.08,0.0131,0.0231\n1,-0.05,0.0131,0.0231\n2,-0.09,0.0131,0.0231\n"
+      "2.5,-0.09,0.0271,0.0231\n4,-0.05,0.0271,0.0231\n5,-0.09,0.0271,0.0231\n",
+      "twice.csv");
+  scenario.time.end = 5.0;
+  const test::Run run = test::run(scenario);
+  EXPECT_EQ(run.states[100].insertions[0].tip.punctures, 1);
+  EXPECT_EQ(run.states[200].insertions[0].tip.punctures, 2);
+  EXPECT_GT(run.reports[200].needles[0].depth, 0.02);
+  EXPECT_EQ(run.reports.back().rows, 0);
+}
+
+// A tip pressed on a surface and drawn aside slides with Coulomb's force, loses what it is given as
+// friction, and presses on nothing once it is beside the body.
+TEST(Surface, ATipDrawnAsideSlidesAndFallsOff)
+{
+  driver::Scenario scenario = scene(10.0, 0.0);
+  scenario.insertion.tip.friction = 0.3;
+  scenario.output.energy = true;
+  scenario.needles[0].motion.entry = Vec3(0, 0.02, 0.0231);
+  scenario.needles[0].motion.trajectory = core::parse_csv(
+      "time,x,y,z\n0,-0.08,0.02,0.0231\n0.2,-0.078,0.02,0.0231\n2.2,-0.078,0.05,0.0231\n",
+      "aside.csv");
+  scenario.time.end = 2.2;
+  const test::Run run = test::run(scenario);
+  int sliding = 0;
+  for (std::size_t n = 1; n < run.states.size(); ++n) {
+    const auto& tip = run.states[n].insertions[0].tip;
+    if (run.states[n].insertions[0].phase == Phase::contact) {
+      const double lateral = tip.lambda.head<2>().norm();
+      EXPECT_LE(lateral, std::sqrt(2.0) * 0.3 * tip.lambda[2] * (1.0 + 1e-6) + 1e-7);
+      sliding += lateral > 0.25 * tip.lambda[2] ? 1 : 0;
+    }
+    if (run.reports[n].needles[0].tip.y() > 0.045) {
+      EXPECT_EQ(run.reports[n].needles[0].coupling.tip_force, 0.0);
+    }
+  }
+  EXPECT_GT(sliding, 30);
+  const driver::EnergyAccount& e = run.states.back().energy;
+  EXPECT_GT(e.friction, 0.2 * e.supplied);
+  EXPECT_LT(std::abs(e.rest()), 0.15 * e.supplied);
+}
+
 }  // namespace
 }  // namespace trocar

@@ -1,0 +1,182 @@
+// Times of the tissue's linear algebra on a gel bar, one line of CSV per figure:
+// dofs,figure,value,unit. usage: compliance_bench DOFS [REPEATS] [BASELINE_COLUMNS]
+#include <mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+#include "base/blas.hpp"
+#include "core/stopwatch.hpp"
+#include "mesh/locator.hpp"
+#include "mesh/partition.hpp"
+#include "solve/step_solver.hpp"
+#include "support/body.hpp"
+
+namespace trocar {
+namespace {
+
+using core::Vec3;
+
+struct Bench
+{
+  int dofs = 0;
+  int repeats = 5;
+
+  void figure(const char* name, double value, const char* unit) const
+  {
+    std::printf("%d,%s,%.6g,%s\n", dofs, name, value, unit);
+    std::fflush(stdout);
+  }
+  /// Median wall time of `work` after `prepare` [s].
+  double median(
+      const std::function<void()>& work, const std::function<void()>& prepare = [] {}) const
+  {
+    std::vector<double> seconds;
+    for (int k = 0; k < repeats; ++k) {
+      prepare();
+      const core::Stopwatch watch;
+      work();
+      seconds.push_back(watch.seconds());
+    }
+    std::nth_element(seconds.begin(), seconds.begin() + repeats / 2, seconds.end());
+    return seconds[static_cast<std::size_t>(repeats / 2)];
+  }
+};
+
+/// Read rate and triad rate of one core [B/s].
+void memory_rates(const Bench& bench)
+{
+  const auto n = static_cast<Eigen::Index>(2e7);
+  core::VecX a = core::VecX::Ones(n), b = core::VecX::Ones(n), c = core::VecX::Ones(n);
+  double sum = 0.0;
+  const double read = bench.median([&] { sum += b.sum(); });
+  const double triad = bench.median([&] { a.noalias() = b + 3.0 * c; });
+  bench.figure("read_rate", 8.0 * static_cast<double>(n) / read, "B/s");
+  bench.figure("triad_rate", 24.0 * static_cast<double>(n) / triad + 0.0 * (sum + a[0]), "B/s");
+}
+
+/// Nodes of all tets along the long axis: what a needle through the bar may probe.
+std::vector<int> axis_nodes(const mesh::Mesh& mesh, const Vec3& size)
+{
+  const mesh::Locator locator(mesh);
+  std::vector<int> nodes;
+  for (double x = 0.0; x <= size.x(); x += 2e-4) {
+    const int tet = locator.tet_at(Vec3(x, 0.4817 * size.y(), 0.5231 * size.z()));
+    if (tet < 0) continue;
+    const auto& corner = mesh.tets[static_cast<std::size_t>(tet)];
+    nodes.insert(nodes.end(), corner.begin(), corner.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+tissue::TissueSettings gel(solve::Provider provider)
+{
+  tissue::TissueSettings settings;
+  settings.model = tissue::Model::linear;
+  settings.materials = {{5000.0, 0.45, 1000.0, 0.1, 0.001}};
+  settings.boundary.fixed = {{"z0", 7}};
+  settings.provider = provider;
+  return settings;
+}
+
+void time_supernodal(const Bench& bench, const test::BlockShape& shape)
+{
+  test::Body body(shape, gel(solve::Provider::supernodal));
+  const tissue::TissueState rest = body.tissue.at_rest();
+  double h = 0.01;
+  const core::Stopwatch watch;
+  body.tissue.prepare({h, h, false});
+  bench.figure("first_operator", watch.seconds(), "s");  // analysis, assembly and factor
+  const auto nodes = axis_nodes(body.mesh, shape.size);
+  bench.figure("isolated_dofs", 3.0 * static_cast<double>(nodes.size()), "1");
+
+  const fem::OwnedField load{core::VecX::Ones(body.space.owned_dofs())};
+  bench.figure("sweep", bench.median([&] {
+    body.tissue.finish({body.space.zero(), body.tissue.begin(load), std::nullopt}, {}, {});
+  }),
+               "s");
+  // A new h is a new operator: its columns start from nothing.
+  solve::ComplianceReport report;
+  bench.figure("columns_at_once",
+               bench.median(
+                   [&] {
+                     body.tissue.compliance().block({nodes, {}}, report);
+                   },
+                   [&] {
+                     h *= 1.01;
+                     body.tissue.prepare({h, h, false});
+                   }),
+               "s");
+  h *= 1.01;
+  body.tissue.prepare({h, h, false});
+  std::vector<double> by_four;
+  for (std::size_t at = 0; at + 4 <= nodes.size(); at += 4) {
+    const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(at);
+    const core::Stopwatch four;
+    body.tissue.compliance().block({{begin, begin + 4}, {}}, report);
+    by_four.push_back(four.seconds());
+  }
+  std::nth_element(by_four.begin(),
+                   by_four.begin() + static_cast<std::ptrdiff_t>(by_four.size() / 2),
+                   by_four.end());
+  bench.figure("twelve_columns", by_four[by_four.size() / 2], "s");
+  const solve::Probes probes{nodes, {}};
+  const core::VecX f = core::VecX::Ones(probes.size());
+  bench.figure("step_sweep", bench.median([&] {
+    const tissue::FreeMotion motion{body.space.zero(), body.tissue.begin(load), std::nullopt};
+    body.tissue.at(probes, motion, motion.base);
+    body.tissue.finish(motion, probes, f);
+  }),
+               "s");
+}
+
+void time_baseline(const Bench& bench, const test::BlockShape& shape, std::size_t columns)
+{
+  test::Body body(shape, gel(solve::Provider::ksp));
+  const core::Stopwatch watch;
+  body.tissue.prepare({0.01, 0.01, false});
+  bench.figure("mumps_first_operator", watch.seconds(), "s");
+  auto nodes = axis_nodes(body.mesh, shape.size);
+  nodes.resize(std::min(nodes.size(), (columns + 2) / 3));
+  solve::ComplianceReport report;
+  body.tissue.compliance().block({nodes, {}}, report);
+  bench.figure("mumps_column", report.seconds / report.built, "s");
+}
+
+int run(int argc, char** argv)
+{
+  Bench bench;
+  bench.dofs = argc > 1 ? std::atoi(argv[1]) : 4000;
+  if (argc > 2) bench.repeats = std::atoi(argv[2]);
+  const Vec3 size(0.15, 0.04, 0.04);
+  // Nodes of a bar of cubes: (15/4 n + 1)(n + 1)², three dofs each.
+  int n = 2;
+  while (3 * (15 * n / 4 + 1) * (n + 1) * (n + 1) < bench.dofs) ++n;
+  const test::BlockShape shape{15 * n / 4, n, n, size, 0.15};
+  bench.dofs = 3 * (15 * n / 4 + 1) * (n + 1) * (n + 1);
+  bench.figure("dgemm_rate", base::blas_rate(), "flop/s");
+  memory_rates(bench);
+  time_supernodal(bench, shape);
+  time_baseline(bench, shape, argc > 3 ? static_cast<std::size_t>(std::atoi(argv[3])) : 60);
+  return 0;
+}
+
+}  // namespace
+}  // namespace trocar
+
+int main(int argc, char** argv)
+{
+  MPI_Init(&argc, &argv);
+  int code = 0;
+  {
+    const trocar::base::PetscSession petsc(&argc, &argv);
+    code = trocar::run(argc, argv);
+  }
+  MPI_Finalize();
+  return code;
+}
