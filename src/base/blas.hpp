@@ -1,6 +1,21 @@
 #pragma once
 
+#include "core/math.hpp"
+
 namespace trocar::base {
+
+using core::MatX;
+using Block = Eigen::Map<const MatX, 0, Eigen::OuterStride<>>;  ///< columns of a larger array
+using Part = Eigen::Ref<MatX, 0, Eigen::OuterStride<>>;         ///< the same, to be written to
+
+/// Products and solves of large dense blocks by the BLAS that the program is linked with, which is
+/// up to twice as fast as Eigen's own.
+MatX product(const Block& A, const MatX& B);                    ///< A B
+MatX transposed_product(const MatX& A, const Block& B);         ///< Aᵀ B
+void subtract_product(const Block& A, const Block& B, Part C);  ///< C -= A B
+/// C += Aᵀ A on the lower triangle of a block of a larger array.
+void add_gram(const MatX& A, Part C);
+void solve_lower(const Block& L, Part B);  ///< B <- L⁻¹ B, L lower triangular
 
 /// Speed of this process's dense matrix product [flop/s]: the best of a few products of 384 x 384,
 /// some milliseconds in all. Factor and compliance columns run at this speed.

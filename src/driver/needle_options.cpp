@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/words.hpp"
 #include "driver/option_source.hpp"
+#include "insertion/clip.hpp"
 #include "insertion/deformed.hpp"
+#include "mesh/topology.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -124,6 +127,27 @@ void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh
                            "-needle_direction)");
 }
 
+/// Tets along the straight way of the tip from the entry to the depth, or from row to row of a
+/// trajectory.
+std::set<int> planned_tets(const needle::BaseMotion& motion, const mesh::Mesh& mesh,
+                           const mesh::Locator& locator)
+{
+  std::vector<core::Vec3> stations{
+      motion.entry, motion.entry + std::max(motion.depth, motion.inserted) * motion.direction};
+  if (motion.trajectory)
+    for (const auto& row : motion.trajectory->rows) {
+      const needle::Pose pose = motion.at(row.front());
+      stations.push_back(pose.x + motion.length * pose.R.col(0));
+    }
+  std::set<int> tets;
+  for (std::size_t i = 0; i + 1 < stations.size(); ++i)
+    for (int tet : locator.in_box(stations[i].cwiseMin(stations[i + 1]),
+                                  stations[i].cwiseMax(stations[i + 1])))
+      if (insertion::clip_line(mesh::corners(mesh, tet), stations[i], stations[i + 1]))
+        tets.insert(tet);
+  return tets;
+}
+
 }  // namespace
 
 std::vector<needle::NeedleSettings> read_needles(core::Options& options, const mesh::Mesh& mesh,
@@ -139,6 +163,30 @@ std::vector<needle::NeedleSettings> read_needles(core::Options& options, const m
     check_needle(needles.back(), mesh, locator, end);
   }
   return needles;
+}
+
+std::vector<int> planned_nodes(const std::vector<needle::NeedleSettings>& needles,
+                               const mesh::Mesh& mesh, int layers)
+{
+  constexpr std::size_t most_nodes = 1000;
+  std::vector<int> nodes;
+  if (layers == 0 || needles.empty()) return nodes;
+  const mesh::Locator locator(mesh);
+  std::set<int> tube;
+  for (const needle::NeedleSettings& settings : needles)
+    for (int tet : planned_tets(settings.motion, mesh, locator))
+      for (int node : mesh.tets[static_cast<std::size_t>(tet)]) tube.insert(node);
+  const mesh::NodeToTets around = mesh::node_to_tets(mesh);
+  for (int layer = 0; layer <= layers && tube.size() <= most_nodes; ++layer) {
+    nodes.assign(tube.begin(), tube.end());
+    for (int node : nodes)
+      for (int k = around.start[static_cast<std::size_t>(node)];
+           k < around.start[static_cast<std::size_t>(node) + 1]; ++k)
+        for (int other :
+             mesh.tets[static_cast<std::size_t>(around.tet[static_cast<std::size_t>(k)])])
+          tube.insert(other);
+  }
+  return nodes;
 }
 
 }  // namespace trocar::driver

@@ -15,4 +15,10 @@ namespace trocar::driver {
 std::vector<needle::NeedleSettings> read_needles(core::Options& options, const mesh::Mesh& mesh,
                                                  double end, const base::Comm& comm);
 
+/// File nodes of the tets that the needles' planned paths go through, and of `layers` rings of
+/// tets around those, as many as keep it below 3000 dofs. Trajectories are taken as the straight
+/// ways of their tips from row to row; 0 layers give none.
+std::vector<int> planned_nodes(const std::vector<needle::NeedleSettings>& needles,
+                               const mesh::Mesh& mesh, int layers);
+
 }  // namespace trocar::driver

@@ -193,6 +193,12 @@ std::vector<OptionSpec> build_table()
              "tissue solver and columns of the isolated compliance: a supernodal factor, or PETSc "
              "with one solve per column or blocks of them; auto takes ksp when a tissue_ksp or "
              "tissue_pc option is given, ksp_block when the factor would not fit in memory"),
+      choice("compliance_reuse", "exact", {"exact", "none"},
+             "keep columns from step to step while the operator stays, or build all in every step"),
+      count("compliance_tube", "1", 0,
+            "layers of nodes around the needles' planned paths that are eliminated last, so that "
+            "their columns are a table; at most 3000 dofs and 10 % more work for the factor; 0 = "
+            "off"),
       word("output_dir", "results", "folder of the results"),
       count("output_every", "1", 1, "field files every so many steps"),
       [] {

@@ -64,6 +64,7 @@ class KspCompliance final : public IsolatedCompliance
                 core::Ledger& ledger);
 
   core::MatX block(const Probes& probes, ComplianceReport& report) override;
+  void forget();  ///< all columns
 
  private:
   struct Column
@@ -74,7 +75,6 @@ class KspCompliance final : public IsolatedCompliance
     bool fixed = false;               ///< zero by definition, never solved for
   };
 
-  void forget();
   std::vector<int> slots_of(const Probes& probes, std::vector<int>& missing);
   void build(const std::vector<int>& missing);
   core::MatX right_hand_sides(const std::vector<int>& slots) const;

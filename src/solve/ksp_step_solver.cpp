@@ -7,8 +7,15 @@ KspStepSolver::KspStepSolver(const StepSolverParts& parts, ColumnSolver columns,
       fixed_(&parts.fixed),
       system_(parts.space, parts.pattern, parts.x, parts.linear, parts.ledger),
       compliance_(system_, parts.fixed, columns, parts.ledger),
-      reason_(std::move(reason))
+      reason_(std::move(reason)),
+      reuse_(parts.reuse)
 {
+}
+
+HalfSolution KspStepSolver::begin(const OwnedField& b)
+{
+  if (!reuse_) compliance_.forget();
+  return {system_.solve(b).value};
 }
 
 core::VecX KspStepSolver::at(const Probes& probes, const HalfSolution& half)

@@ -11,7 +11,7 @@ class KspStepSolver final : public StepSolver
   KspStepSolver(const StepSolverParts& parts, ColumnSolver columns, std::string reason);
 
   void set_operator(const fem::BlockMatrix& values) override { system_.set_operator(values); }
-  HalfSolution begin(const OwnedField& b) override { return {system_.solve(b).value}; }
+  HalfSolution begin(const OwnedField& b) override;
   core::VecX at(const Probes& probes, const HalfSolution& half) override;
   OwnedField finish(const HalfSolution& half, const Probes& probes, const core::VecX& f) override;
   IsolatedCompliance& compliance() override { return compliance_; }
@@ -23,6 +23,7 @@ class KspStepSolver final : public StepSolver
   LinearSystem system_;
   KspCompliance compliance_;
   std::string reason_;
+  bool reuse_;
 };
 
 }  // namespace trocar::solve

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/blas.hpp"
 #include "solve/supernodal_factor.hpp"
 
 namespace trocar::solve {
@@ -38,9 +39,12 @@ class ReachColumns
   };
   struct Batch;
 
-  Eigen::Map<const core::MatX> values(int s) const;
+  base::Block values(int s) const;
   void enlarge(int count);
-  void append(int s, const core::MatX& Y, const int* slots, const core::MatX& products);
+  void append(int s, const core::MatX& Y, const int* slots);
+  void settle(const Batch& batch);
+  static void solve_rows(const SupernodalFactor::Supernode& node, int begin, int end,
+                         const int* first_position, const int* last_position, core::MatX& Y);
   void eliminate(int s, Batch& batch);
 
   const SupernodalFactor* factor_;

@@ -41,6 +41,8 @@ class StepSolver
   virtual OwnedField finish(const HalfSolution& half, const Probes& probes,
                             const core::VecX& f) = 0;
   virtual IsolatedCompliance& compliance() = 0;
+  /// Memory of a factor of our own [B], 0 when PETSc keeps it.
+  virtual double factor_bytes() const { return 0.0; }
   /// For the log and the record.
   virtual std::string describe() const = 0;
 };
@@ -52,6 +54,10 @@ struct StepSolverParts
   const fem::BlockPattern& pattern;
   const fem::Dirichlet& fixed;
   const std::vector<core::Vec3>& x;  ///< reference positions of all nodes in file order [m]
+  /// File nodes that will be probed: put last in the factor, where their columns cost next to
+  /// nothing.
+  const std::vector<int>& pinned;
+  bool reuse;  ///< keep columns from step to step while the operator stays
   LinearSettings linear;
   core::Ledger& ledger;
 };

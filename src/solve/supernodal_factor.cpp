@@ -65,6 +65,7 @@ SupernodalFactor::SupernodalFactor(SymmetricPattern pattern, const std::vector<i
 
 SupernodalFactor::~SupernodalFactor() = default;
 SupernodalFactor::SupernodalFactor(SupernodalFactor&&) noexcept = default;
+SupernodalFactor& SupernodalFactor::operator=(SupernodalFactor&&) noexcept = default;
 
 void SupernodalFactor::factorise(const std::vector<double>& values)
 {

@@ -26,6 +26,7 @@ class SupernodalFactor
   SupernodalFactor(SymmetricPattern pattern, const std::vector<int>& order);
   ~SupernodalFactor();
   SupernodalFactor(SupernodalFactor&&) noexcept;
+  SupernodalFactor& operator=(SupernodalFactor&&) noexcept;
 
   /// Takes values (by entry of the pattern) and factors. Failure (70) when A is not positive
   /// definite.

@@ -10,6 +10,8 @@
 namespace trocar::solve {
 namespace {
 
+constexpr double most_extra_flops = 1.1;  ///< what pinning may cost the factor
+
 /// Nested dissection of a graph given as neighbour lists: the vertex at each place.
 std::vector<int> dissection(const std::vector<std::vector<int>>& neighbours)
 {
@@ -35,12 +37,12 @@ std::vector<int> dissection(const std::vector<std::vector<int>>& neighbours)
 }  // namespace
 
 SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
-    : space_(&parts.space), fixed_(&parts.fixed), ledger_(&parts.ledger)
+    : space_(&parts.space), fixed_(&parts.fixed), ledger_(&parts.ledger), reuse_(parts.reuse)
 {
   number_free_dofs();
   const Blocks blocks = gather_blocks(parts.pattern);
   base::on_root(space_->comm(), [&] {
-    analyse(blocks);
+    analyse(blocks, parts.pinned);
     bytes_ = factor_->bytes();
   });
   bytes_ = space_->comm().max(bytes_);
@@ -88,7 +90,7 @@ SupernodalStepSolver::Blocks SupernodalStepSolver::gather_blocks(const fem::Bloc
 
 /// Orders the graph of the nodes, which has nine times fewer edges than that of the dofs and gives
 /// the same fill, and lays the free entries of the blocks out by columns.
-void SupernodalStepSolver::analyse(const Blocks& blocks)
+void SupernodalStepSolver::analyse(const Blocks& blocks, const std::vector<int>& pinned)
 {
   struct Entry
   {
@@ -127,11 +129,35 @@ void SupernodalStepSolver::analyse(const Blocks& blocks)
     source_.push_back(entry.source);
   }
   std::partial_sum(pattern.start.begin(), pattern.start.end(), pattern.start.begin());
+  factor_.emplace(pattern, dof_order(neighbours, {}));
+  if (pinned.empty()) return;
+  SupernodalFactor with(std::move(pattern), dof_order(neighbours, pinned));
+  if (with.flops() > most_extra_flops * factor_->flops()) return;
+  factor_.emplace(std::move(with));
+  pinned_ = static_cast<int>(pinned.size());
+}
+
+/// Free dofs in the order of elimination: nested dissection of the graph of the nodes, those pinned
+/// taken out of it and put last.
+std::vector<int> SupernodalStepSolver::dof_order(const std::vector<std::vector<int>>& neighbours,
+                                                 const std::vector<int>& pinned) const
+{
+  std::vector<bool> last(neighbours.size(), false);
+  for (int node : pinned) last[static_cast<std::size_t>(space_->number_of_file(node))] = true;
+  std::vector<std::vector<int>> rest = neighbours;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    std::erase_if(rest[i], [&](int j) { return last[i] || last[static_cast<std::size_t>(j)]; });
   std::vector<int> order;
-  for (int node : dissection(neighbours))
-    for (int axis = 0; axis < 3; ++axis)
-      if (dof(node, axis) >= 0) order.push_back(dof(node, axis));
-  factor_.emplace(std::move(pattern), order);
+  const auto add = [&](int node) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int dof = free_[static_cast<std::size_t>(3 * node + axis)];
+      if (dof >= 0) order.push_back(dof);
+    }
+  };
+  for (int node : dissection(rest))
+    if (!last[static_cast<std::size_t>(node)]) add(node);
+  for (int node : pinned) add(space_->number_of_file(node));
+  return order;
 }
 
 void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
@@ -149,15 +175,20 @@ void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
     std::vector<double> entries(source_.size());
     for (std::size_t k = 0; k < source_.size(); ++k) entries[k] = from[source_[k]];
     factor_->factorise(entries);
-    if (columns_)
-      columns_->clear();
-    else
-      columns_.emplace(*factor_);
   });
+  forget_columns();
+  ++ledger_->factorisations;
+}
+
+void SupernodalStepSolver::forget_columns()
+{
+  if (columns_)
+    columns_->clear();
+  else if (factor_)
+    columns_.emplace(*factor_);
   first_slot_of_node_.clear();
   slot_of_wide_.clear();
   slots_ = 0;
-  ++ledger_->factorisations;
 }
 
 core::VecX SupernodalStepSolver::gather_free(const OwnedField& field) const
@@ -192,6 +223,7 @@ OwnedField SupernodalStepSolver::scatter_free(const core::VecX& y) const
 
 HalfSolution SupernodalStepSolver::begin(const OwnedField& b)
 {
+  if (!reuse_) forget_columns();
   HalfSolution half{gather_free(b)};
   if (space_->comm().root()) factor_->forward(half.value);
   ++ledger_->half_sweeps;
@@ -276,6 +308,7 @@ std::string SupernodalStepSolver::describe() const
 {
   return "supernodal cholesky (cholmod, factor " +
          std::to_string(static_cast<long long>(bytes_ / 1e6)) + " MB" +
+         (pinned_ > 0 ? ", " + std::to_string(pinned_) + " nodes pinned" : "") +
          (space_->comm().size() > 1 ? ", on rank 0)" : ")");
 }
 

@@ -17,13 +17,12 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
  public:
   explicit SupernodalStepSolver(const StepSolverParts& parts);
 
-  double factor_bytes() const { return bytes_; }  ///< of L, equal on every rank [B]
-
   void set_operator(const fem::BlockMatrix& values) override;
   HalfSolution begin(const OwnedField& b) override;
   core::VecX at(const Probes& probes, const HalfSolution& half) override;
   OwnedField finish(const HalfSolution& half, const Probes& probes, const core::VecX& f) override;
   IsolatedCompliance& compliance() override { return *this; }
+  double factor_bytes() const override { return bytes_; }
   std::string describe() const override;
 
  private:
@@ -34,9 +33,12 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   };
 
   core::MatX block(const Probes& probes, ComplianceReport& report) override;
+  void forget_columns();
   void number_free_dofs();
   Blocks gather_blocks(const fem::BlockPattern& pattern);
-  void analyse(const Blocks& blocks);
+  void analyse(const Blocks& blocks, const std::vector<int>& pinned);
+  std::vector<int> dof_order(const std::vector<std::vector<int>>& neighbours,
+                             const std::vector<int>& pinned) const;
   std::vector<int> slots_of(const Probes& probes, ComplianceReport& report);
   core::VecX gather_free(const OwnedField& field) const;
   OwnedField scatter_free(const core::VecX& y) const;
@@ -44,7 +46,9 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   const fem::Space* space_;
   const fem::Dirichlet* fixed_;
   core::Ledger* ledger_;
+  bool reuse_;
   double bytes_ = 0.0;
+  int pinned_ = 0;                              ///< nodes put last
   std::vector<int> value_count_, value_start_;  ///< doubles of every rank's blocks
   std::vector<int> dof_count_, dof_start_;      ///< dofs of every rank
   std::vector<int> free_;                       ///< free number by global dof, -1 when fixed

@@ -27,6 +27,8 @@ struct TissueSettings
   BoundaryConditions boundary;
   solve::LinearSettings linear;
   solve::Provider provider = solve::Provider::automatic;
+  bool reuse_columns = true;
+  std::vector<int> pinned;  ///< file nodes that needles are planned to reach
 };
 
 /// Displacement and velocity of every owned node. A value.
@@ -101,6 +103,7 @@ class Tissue
   const mesh::Mesh& mesh() const { return *mesh_; }
   const fem::Space& space() const { return *space_; }
   std::string describe_solver() const;
+  double factor_bytes() const { return current_->solver->factor_bytes(); }  ///< 0: not ours [B]
   /// Builds and factors the operator of a step from rest, so that `-check` can stop. Collective.
   void prepare(const TimeStep& step);
 

@@ -74,13 +74,14 @@ std::vector<int> axis_nodes(const mesh::Mesh& mesh, const Vec3& size)
   return nodes;
 }
 
-tissue::TissueSettings gel(solve::Provider provider)
+tissue::TissueSettings gel(solve::Provider provider, const std::vector<int>& pinned = {})
 {
   tissue::TissueSettings settings;
   settings.model = tissue::Model::linear;
   settings.materials = {{5000.0, 0.45, 1000.0, 0.1, 0.001}};
   settings.boundary.fixed = {{"z0", 7}};
   settings.provider = provider;
+  settings.pinned = pinned;
   return settings;
 }
 
@@ -92,6 +93,7 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
   const core::Stopwatch watch;
   body.tissue.prepare({h, h, false});
   bench.figure("first_operator", watch.seconds(), "s");  // analysis, assembly and factor
+  bench.figure("factor_bytes", body.tissue.factor_bytes(), "B");
   const auto nodes = axis_nodes(body.mesh, shape.size);
   bench.figure("isolated_dofs", 3.0 * static_cast<double>(nodes.size()), "1");
 
@@ -135,6 +137,28 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
                "s");
 }
 
+/// All columns of nodes that the factor has put last, and what that costs the factor.
+void time_pinned(const Bench& bench, const test::BlockShape& shape)
+{
+  const mesh::Mesh mesh = test::block(shape);
+  const auto nodes = axis_nodes(mesh, shape.size);
+  test::Body body(shape, gel(solve::Provider::supernodal, nodes));
+  double h = 0.01;
+  solve::ComplianceReport report;
+  const auto renew = [&] {
+    h *= 1.01;
+    body.tissue.prepare({h, h, false});
+  };
+  renew();
+  bench.figure("pinned_columns",
+               bench.median(
+                   [&] {
+                     body.tissue.compliance().block({nodes, {}}, report);
+                   },
+                   renew),
+               "s");
+}
+
 void time_baseline(const Bench& bench, const test::BlockShape& shape, std::size_t columns)
 {
   test::Body body(shape, gel(solve::Provider::ksp));
@@ -162,6 +186,7 @@ int run(int argc, char** argv)
   bench.figure("dgemm_rate", base::blas_rate(), "flop/s");
   memory_rates(bench);
   time_supernodal(bench, shape);
+  time_pinned(bench, shape);
   time_baseline(bench, shape, argc > 3 ? static_cast<std::size_t>(std::atoi(argv[3])) : 60);
   return 0;
 }

@@ -154,6 +154,42 @@ INSTANTIATE_TEST_SUITE_P(Providers, Compliance,
                          ::testing::Values(solve::Provider::supernodal, solve::Provider::ksp,
                                            solve::Provider::ksp_block));
 
+// Nodes put last in the factor give the same columns; those outside the tube too, in any order.
+TEST(Supernodal, PinnedNodesHaveTheSameColumns)
+{
+  const test::BlockShape shape{4, 3, 3, core::Vec3(0.1, 0.08, 0.08), 0.2};
+  tissue::TissueSettings settings = held(solve::Provider::supernodal);
+  test::Body plain(shape, settings);
+  settings.pinned = {26, 27, 31, 32, 33, 37, 52, 53};
+  test::Body pinned(shape, settings);
+  for (test::Body* body : {&plain, &pinned}) body->tissue.prepare({0.0, 0.01, false});
+  for (const std::vector<int>& nodes :
+       {std::vector<int>{27, 31, 52}, {5, 31, 60}, {5, 17, 26, 27, 31, 60}}) {
+    solve::ComplianceReport report;
+    const core::MatX a = plain.tissue.compliance().block({nodes, {}}, report);
+    const core::MatX b = pinned.tissue.compliance().block({nodes, {}}, report);
+    EXPECT_LT((a - b).norm(), 1e-11 * a.norm());
+  }
+}
+
+TEST(Reuse, CanBeTurnedOff)
+{
+  for (solve::Provider provider : {solve::Provider::supernodal, solve::Provider::ksp_block}) {
+    tissue::TissueSettings settings = held(provider);
+    settings.reuse_columns = false;
+    test::Body body({3, 3, 3, core::Vec3(0.1, 0.1, 0.1)}, settings);
+    const tissue::TissueState rest = body.tissue.at_rest();
+    solve::ComplianceReport report;
+    for (int n = 1; n <= 3; ++n) {
+      body.tissue.free_motion(rest, rest.u, {0.01 * n, 0.01, false});
+      body.tissue.compliance().block({{62, 63}, {}}, report);
+      EXPECT_EQ(report.built, 6);
+      EXPECT_EQ(report.reused, 0);
+    }
+    EXPECT_EQ(body.ledger.factorisations, 1);
+  }
+}
+
 TEST(LinearTissue, OneOperatorPerDistinctStepLength)
 {
   test::Body body({2, 2, 2, core::Vec3(0.1, 0.1, 0.1)}, held(solve::Provider::automatic));
