@@ -193,6 +193,9 @@ std::vector<OptionSpec> build_table()
              "tissue solver and columns of the isolated compliance: a supernodal factor, or PETSc "
              "with one solve per column or blocks of them; auto takes ksp when a tissue_ksp or "
              "tissue_pc option is given, ksp_block when the factor would not fit in memory"),
+      not_negative("compliance_memory", "0", "B",
+                   "memory that the supernodal factor may take before auto falls back to "
+                   "ksp_block; 0 = 70 % of what is free"),
       choice("compliance_reuse", "exact", {"exact", "none"},
              "keep columns from step to step while the operator stays, or build all in every step"),
       count("compliance_tube", "1", 0,

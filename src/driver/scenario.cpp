@@ -262,6 +262,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
       {"supernodal", solve::Provider::supernodal},
       {"ksp", solve::Provider::ksp},
       {"ksp_block", solve::Provider::ksp_block}};
+  scenario.tissue.most_memory = options.real("compliance_memory");
   scenario.tissue.reuse_columns = options.text("compliance_reuse") == "exact";
   scenario.tissue.pinned =
       planned_nodes(scenario.needles, scenario.mesh, options.integer("compliance_tube"));

@@ -34,7 +34,9 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
     return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked, "");
   auto solver = std::make_unique<SupernodalStepSolver>(parts);
   if (provider == Provider::supernodal) return solver;
-  const double limit = part_of_memory * parts.space.comm().max(available_memory());
+  const double limit = parts.most_memory > 0.0
+                           ? parts.most_memory
+                           : part_of_memory * parts.space.comm().max(available_memory());
   if (limit <= 0.0 || solver->factor_bytes() <= limit) return solver;
   return std::make_unique<KspStepSolver>(
       parts, ColumnSolver::blocked,

@@ -57,7 +57,8 @@ struct StepSolverParts
   /// File nodes that will be probed: put last in the factor, where their columns cost next to
   /// nothing.
   const std::vector<int>& pinned;
-  bool reuse;  ///< keep columns from step to step while the operator stays
+  bool reuse;          ///< keep columns from step to step while the operator stays
+  double most_memory;  ///< that an own factor may take [B], 0: a part of what is free
   LinearSettings linear;
   core::Ledger& ledger;
 };

@@ -76,9 +76,10 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
     if (space_->comm().all(same)) return;
   } else {
     Operator fresh;
-    fresh.solver = solve::make_step_solver(settings_.provider,
-                                           {*space_, pattern_, fixed_, mesh_->x, settings_.pinned,
-                                            settings_.reuse_columns, settings_.linear, *ledger_});
+    fresh.solver = solve::make_step_solver(
+        settings_.provider,
+        {*space_, pattern_, fixed_, mesh_->x, settings_.pinned, settings_.reuse_columns,
+         settings_.most_memory, settings_.linear, *ledger_});
     operators_.push_back(std::move(fresh));
     current_ = &operators_.back();
   }

@@ -28,7 +28,8 @@ struct TissueSettings
   solve::LinearSettings linear;
   solve::Provider provider = solve::Provider::automatic;
   bool reuse_columns = true;
-  std::vector<int> pinned;  ///< file nodes that needles are planned to reach
+  double most_memory = 0.0;  ///< that a factor of our own may take [B], 0: a part of what is free
+  std::vector<int> pinned;   ///< file nodes that needles are planned to reach
 };
 
 /// Displacement and velocity of every owned node. A value.

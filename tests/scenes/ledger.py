@@ -1,7 +1,7 @@
 """The work ledger: a scene pays only for what it uses."""
 import os
 
-from harness import check, completed, finish, histories, ledger, options, small_block
+from harness import check, completed, finish, histories, ledger, options, run, small_block
 
 small = options("small_insertion.opts")
 small["-mesh"] = small_block()
@@ -35,6 +35,14 @@ check(os.listdir(os.path.join(folder, "fields")) == [], "no output fields: no fi
 work = ledger(completed({**small, "-time_end": "1"}))
 check(work["half_sweeps"] == 2 * work["steps"] and work["solves"] == 0,
       "free motion, constraints and correction: one sweep per step")
+
+tight = {**small, "-time_end": "0.2", "-compliance_memory": "1000"}
+work = ledger(completed(tight))
+check(work["half_sweeps"] == 0 and work["solves"] > 0, "a factor that is too large: PETSc instead")
+said = run({**tight, "-check": ""}).stdout
+check("because a supernodal factor would take" in said, "and the log says why")
+work = ledger(completed({**small, "-compliance_reuse": "none", "-time_end": "1"}))
+check(work["columns_reused"] == 0 and work["columns_built"] > 100, "reuse none: nothing is kept")
 
 for provider, more in (("ksp", {}), ("ksp_block", {}), ("auto", {"-tissue_ksp_type": "cg"}),
                        ("auto", {"-tissue_mat_mumps_icntl_14": "80"})):
