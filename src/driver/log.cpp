@@ -50,6 +50,10 @@ void Log::step(int number, const State& state, const StepReport& report)
 {
   if (!speaks()) return;
   energy_ = state.energy;
+  for (const NeedleReport& needle : report.needles) {
+    friction_ -= needle.coupling.friction_work;
+    cutting_ -= needle.coupling.cutting_work;
+  }
   if (lines_++ % 40 == 0)
     std::printf("%6s %10s %10s %6s %6s %10s %12s %8s\n", "step", "time [s]", "depth [mm]", "rows",
                 "iters", "resid [m]", "base [N]", "ETA [s]");
@@ -83,6 +87,8 @@ void Log::finish() const
   for (const auto& [name, count] : simulation_->ledger().entries())
     if (count != 0)
       std::printf(" %s %lld", std::string(name).c_str(), static_cast<long long>(count));
+  if (!simulation_->needles().empty())
+    std::printf("\ndissipated [J]: friction %.4g, cutting %.4g", friction_, cutting_);
   if (simulation_->scenario().output.energy)
     std::printf(
         "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "

@@ -24,7 +24,8 @@ class Log
   const Simulation* simulation_;
   core::Stopwatch watch_;
   int lines_ = 0;
-  EnergyAccount energy_;  ///< of the last step
+  EnergyAccount energy_;                   ///< of the last step
+  double friction_ = 0.0, cutting_ = 0.0;  ///< dissipated so far [J]
 };
 
 }  // namespace trocar::driver

@@ -142,8 +142,7 @@ void Insertion::add_points_behind(InsertionState& state, double arc, double need
     point.site = static_cast<int>(state.points.size());
     point.stuck = false;
     // The tip passed it within the step; it counts as having slipped the whole step, so that its
-    // friction is there at once and the force has no dent where points are born. Where the tip
-    // cuts, the step is over and the point takes the place on the shaft that it has.
+    // friction is there at once and the force has no dent where points are born.
     const double site_arc = state.path.sites[state.points.size()].arc;
     point.needle_arc = needle_length + (site_arc - old_arc);
     state.points.push_back(point);

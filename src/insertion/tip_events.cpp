@@ -185,7 +185,14 @@ void Insertion::settle(InsertionState& state, const CouplingReport& report,
   if (state.tip.pressed && state.tip.threshold <= 0.0)
     state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
   state.tip_arc = state.path.length();
+  const std::size_t known = state.points.size();
   add_points_behind(state, state.path.length(), shaft.length);
+  // The step is over: new points stand where they are on the shaft, which under load is a little
+  // ahead of where the path says.
+  for (std::size_t k = known; k < state.points.size(); ++k) {
+    const Site& site = state.path.sites[static_cast<std::size_t>(state.points[k].site)];
+    state.points[k].needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
+  }
 }
 
 }  // namespace trocar::insertion

@@ -49,6 +49,11 @@ TEST(Cutting, ForceActsWhileTheTipAdvancesAndNotInTheOpenChannel)
     EXPECT_LE(needle.coupling.cutting_work, 1e-15);
     if (state.path.length() > before + 1e-9 && before > 0.0) {
       EXPECT_NEAR(needle.coupling.tip_force, 0.15, 1e-12);
+      // No dent where points are born: all of the channel that was there rubs.
+      if (before > 0.005) {
+        EXPECT_NEAR(needle.coupling.shaft_friction, 2.0 * run.reports[n - 1].needles[0].depth,
+                    1e-3);
+      }
       ++cutting;
     }
     const bool in_channel = state.tip_arc < deepest - 1e-3;
