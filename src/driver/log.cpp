@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "base/blas.hpp"
-#include "driver/recorder.hpp"
+#include "driver/provenance.hpp"
 
 namespace trocar::driver {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "core/words.hpp"
-
 namespace trocar::driver {
 namespace {
 
@@ -68,9 +66,9 @@ void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec, const
   table.push_back(own);
 }
 
-std::vector<OptionSpec> build_table()
+std::vector<OptionSpec> general_options()
 {
-  std::vector<OptionSpec> t{
+  return {
       word("mesh", "", "Gmsh file (2.2 or 4.1, ascii or binary)"),
       positive("mesh_scale", "1", "1", "factor on the mesh's coordinates, 1e-3 for millimetres"),
       choice("analysis", "dynamic", {"dynamic", "static"},
@@ -85,6 +83,10 @@ std::vector<OptionSpec> build_table()
       choice("tissue_model", "corotational", {"linear", "corotational"}, "tissue law"),
       choice("tissue_mass", "consistent", {"consistent", "lumped"}, "tissue mass matrix"),
   };
+}
+
+void add_tissue(std::vector<OptionSpec>& t)
+{
   with_override(t, positive("tissue_young", "5000", "Pa", "Young's modulus"), "<volume>");
   with_override(t, poisson("tissue_poisson", "0.45"), "<volume>");
   with_override(t, positive("tissue_density", "1000", "kg/m^3", "mass density"), "<volume>");
@@ -94,6 +96,10 @@ std::vector<OptionSpec> build_table()
   with_override(t,
                 not_negative("tissue_rayleigh_stiffness", "0", "s", "beta in B = alpha M + beta K"),
                 "<volume>");
+}
+
+void add_boundary(std::vector<OptionSpec>& t)
+{
   const std::vector<OptionSpec> boundary{
       list("fix", "physical surfaces or points held still: NAME[:axes],… (axes such as xz)"),
       vector("boundary_<surf>_displacement", "free,free,free", "m",
@@ -103,7 +109,10 @@ std::vector<OptionSpec> build_table()
            "CSV (columns time,factor) that scales displacement and traction of the group"),
   };
   t.insert(t.end(), boundary.begin(), boundary.end());
+}
 
+void add_needles(std::vector<OptionSpec>& t)
+{
   t.push_back(list("needles", "names of the needles"));
   const std::vector<OptionSpec> needle{
       choice("needle_model", "beam", {"rigid", "beam"}, "corotational Timoshenko beam, or rigid"),
@@ -134,7 +143,10 @@ std::vector<OptionSpec> build_table()
            "CSV of the base: time,x,y,z[,dx,dy,dz[,roll]]; replaces velocity, depth, hold"),
   };
   for (const OptionSpec& spec : needle) with_override(t, spec, "<needle>");
+}
 
+void add_insertion(std::vector<OptionSpec>& t)
+{
   t.push_back(choice("insertion_placement", "crossings", {"crossings", "spacing"},
                      "coupling points where the path crosses faces, or at a spacing"));
   t.push_back(positive("insertion_spacing", "0.005", "m", "distance for placement spacing"));
@@ -174,6 +186,10 @@ std::vector<OptionSpec> build_table()
                "axial force as this part of the sticking one (the papers' law; depends on mesh and "
                "step, for reproduction only); 0 = off",
                0.0, 1.0, false, true});
+}
+
+void add_constraint(std::vector<OptionSpec>& t)
+{
   const std::vector<OptionSpec> rest{
       choice("constraint_solver", "auto", {"auto", "pgs", "hybrid", "active_set", "interior_point"},
              "solver of the dense constraint problem"),
@@ -189,6 +205,13 @@ std::vector<OptionSpec> build_table()
           "constraint_compare",
           "solvers to be timed on every constraint problem beside the one of the run, for studies: "
           "METHOD[:NORM[:TOLERANCE]],…"),
+  };
+  t.insert(t.end(), rest.begin(), rest.end());
+}
+
+void add_compliance(std::vector<OptionSpec>& t)
+{
+  const std::vector<OptionSpec> rest{
       choice("compliance_provider", "auto", {"auto", "supernodal", "ksp", "ksp_block"},
              "tissue solver and columns of the isolated compliance: a supernodal factor, or PETSc "
              "with one solve per column or blocks of them; auto takes ksp when a tissue_ksp or "
@@ -202,6 +225,13 @@ std::vector<OptionSpec> build_table()
             "layers of nodes around the needles' planned paths that are eliminated last, so that "
             "their columns are a table; at most 3000 dofs and 10 % more work for the factor; 0 = "
             "off"),
+  };
+  t.insert(t.end(), rest.begin(), rest.end());
+}
+
+void add_output(std::vector<OptionSpec>& t)
+{
+  const std::vector<OptionSpec> rest{
       word("output_dir", "results", "folder of the results"),
       count("output_every", "1", 1, "field files every so many steps"),
       [] {
@@ -215,34 +245,15 @@ std::vector<OptionSpec> build_table()
       flag("quiet", "no progress lines"),
   };
   t.insert(t.end(), rest.begin(), rest.end());
+}
+
+std::vector<OptionSpec> build_table()
+{
+  std::vector<OptionSpec> t = general_options();
+  for (auto* add : {add_tissue, add_boundary, add_needles, add_insertion, add_constraint,
+                    add_compliance, add_output})
+    add(t);
   return t;
-}
-
-const char* type_name(OptionType type)
-{
-  switch (type) {
-    case OptionType::real:
-      return "real";
-    case OptionType::integer:
-      return "integer";
-    case OptionType::flag:
-      return "flag";
-    case OptionType::text:
-      return "text";
-    case OptionType::choice:
-      return "choice";
-    case OptionType::names:
-      return "names";
-    case OptionType::vector:
-      return "x,y,z";
-  }
-  return "";
-}
-
-/// "range or choices" as one cell.
-std::string limits(const OptionSpec& spec)
-{
-  return spec.choices.empty() ? core::range_text(spec) : core::join(spec.choices);
 }
 
 }  // namespace
@@ -251,40 +262,6 @@ const std::vector<OptionSpec>& option_table()
 {
   static const std::vector<OptionSpec> table = build_table();
   return table;
-}
-
-void print_help(std::ostream& out)
-{
-  out << "usage: mpirun -n RANKS trocar -options_file FILE.opts [-option value …]\n"
-         "       trocar -help | -help_markdown | -version\n\n"
-         "Options (SI units). <volume>, <surf>, <needle> stand for names of yours; an option with\n"
-         "such a name overrides the one without. PETSc's own options work too: -tissue_ksp_*,\n"
-         "-tissue_pc_*, -tissue_mat_mumps_*, -log_view, …\n\n";
-  for (const OptionSpec& spec : option_table()) {
-    out << "  -" << spec.name << " <" << type_name(spec.type) << ">  default "
-        << (spec.fallback.empty() ? "\"\"" : spec.fallback);
-    if (!spec.unit.empty() && spec.unit != "1") out << " [" << spec.unit << "]";
-    const std::string limit = limits(spec);
-    if (!limit.empty()) out << "  {" << limit << "}";
-    out << "\n      " << spec.help << "\n";
-  }
-}
-
-void print_markdown(std::ostream& out)
-{
-  out << "# Options\n\n"
-         "Generated by `build/trocar -help_markdown > docs/options.md`; a test keeps it current.\n"
-         "All values are SI. `<volume>`, `<surf>` and `<needle>` stand for names of yours; an\n"
-         "option with such a name overrides the one without. Order of precedence: command line,\n"
-         "`PETSC_OPTIONS`, options file. Unknown options end the run with code 64.\n\n"
-         "The tissue's linear solver takes PETSc's options with the prefix `-tissue_`:\n"
-         "`-tissue_ksp_type cg -tissue_pc_type gamg`, `-tissue_mat_mumps_icntl_14 80`, …\n\n"
-         "| option | type | default | unit | range or choices | meaning |\n"
-         "|---|---|---|---|---|---|\n";
-  for (const OptionSpec& spec : option_table())
-    out << "| `-" << spec.name << "` | " << type_name(spec.type) << " | `"
-        << (spec.fallback.empty() ? "\"\"" : spec.fallback) << "` | " << spec.unit << " | "
-        << limits(spec) << " | " << spec.help << " |\n";
 }
 
 }  // namespace trocar::driver

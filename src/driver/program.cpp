@@ -11,6 +11,7 @@
 #include "core/words.hpp"
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
+#include "driver/provenance.hpp"
 #include "driver/recorder.hpp"
 
 namespace trocar::driver {

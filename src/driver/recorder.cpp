@@ -1,84 +1,32 @@
 #include "driver/recorder.hpp"
 
-#include <gmsh.h>
-#include <hdf5.h>
+#include <algorithm>
 
-#include <ctime>
+#include "driver/provenance.hpp"
 
-#include "base/petsc.hpp"
 #include "core/words.hpp"
-#include "driver/build_info.hpp"
 
 namespace trocar::driver {
 namespace {
 
-std::string utc_now()
+void add_energy_series(const Scenario& scenario, std::vector<io::Series>& series)
 {
-  const std::time_t now = std::time(nullptr);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-  return text;
+  if (scenario.output.energy)
+    for (const char* name :
+         {"elastic", "kinetic", "supplied", "friction", "cutting", "damping", "rest"})
+      series.push_back({std::string("energy/") + name, 0, "J"});
 }
 
-std::string petsc_version()
+void add_compare_series(const Scenario& scenario, std::vector<io::Series>& series)
 {
-  return std::to_string(PETSC_VERSION_MAJOR) + "." + std::to_string(PETSC_VERSION_MINOR) + "." +
-         std::to_string(PETSC_VERSION_SUBMINOR);
-}
-
-std::string mpi_version()
-{
-  char text[MPI_MAX_LIBRARY_VERSION_STRING];
-  int length = 0;
-  MPI_Get_library_version(text, &length);
-  return {text, static_cast<std::size_t>(length)};
-}
-
-/// Every option in PETSc's database, its own solvers' included, as one line.
-std::string petsc_options()
-{
-  char* text = nullptr;
-  TROCAR_PETSC(PetscOptionsGetAll(nullptr, &text));
-  const std::string all = text;
-  TROCAR_PETSC(PetscFree(text));
-  return all;
-}
-
-io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
-                          const std::vector<core::ResolvedOption>& options,
-                          const std::string& solver)
-{
-  io::Provenance p;
-  p.texts = {{"program", "trocar"},
-             {"version", build_info::version},
-             {"git_commit", build_info::git_commit},
-             {"build_type", build_info::build_type},
-             {"compiler", build_info::compiler},
-             {"created_utc", utc_now()},
-             {"command_line", core::join(invocation.arguments, " ")},
-             {"mpi_ranks", std::to_string(simulation.space().comm().size())},
-             {"petsc_version", petsc_version()},
-             {"hdf5_version", H5_VERS_INFO},
-             {"gmsh_version", GMSH_API_VERSION},
-             {"mpi_version", mpi_version()},
-             {"options_file_name", invocation.options_file},
-             {"options_file", invocation.options_file_text},
-             {"petsc_options", petsc_options()},
-             {"tissue_solver", solver},
-             {"mesh_file", simulation.scenario().mesh.file},
-             {"mesh_hash_fnv1a", simulation.scenario().mesh.hash}};
-  std::vector<std::string> names, values, units, sources;
-  for (const core::ResolvedOption& option : options) {
-    names.push_back(option.name);
-    values.push_back(option.value);
-    units.push_back(option.unit);
-    sources.push_back(option.source);
+  for (const law::Contender& contender : scenario.compare) {
+    const std::string at = "constraint/compare/" + contender.name + "/";
+    series.insert(series.end(), {{at + "iterations", 0, "1"},
+                                 {at + "failures", 0, "1"},
+                                 {at + "residual", 0, "m"},
+                                 {at + "seconds", 0, "s"},
+                                 {at + "factor_seconds", 0, "s"}});
   }
-  p.tables = {{"options/name", names},
-              {"options/value", values},
-              {"options/unit", units},
-              {"options/source", sources}};
-  return p;
 }
 
 std::vector<io::Series> series_of(const Scenario& scenario)
@@ -98,10 +46,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                  {at + "points", 0, "1"},
                                  {at + "slipping", 0, "1"}});
   }
-  if (scenario.output.energy)
-    for (const char* name :
-         {"elastic", "kinetic", "supplied", "friction", "cutting", "damping", "rest"})
-      series.push_back({std::string("energy/") + name, 0, "J"});
+  add_energy_series(scenario, series);
   series.insert(series.end(), {{"constraint/rows", 0, "1"},
                                {"constraint/rank", 0, "1"},
                                {"constraint/iterations", 0, "1"},
@@ -110,14 +55,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                {"constraint/outer", 0, "1"},
                                {"constraint/contraction", 0, "1"},
                                {"constraint/smallest_gap", 0, "m"}});
-  for (const law::Contender& contender : scenario.compare) {
-    const std::string at = "constraint/compare/" + contender.name + "/";
-    series.insert(series.end(), {{at + "iterations", 0, "1"},
-                                 {at + "failures", 0, "1"},
-                                 {at + "residual", 0, "m"},
-                                 {at + "seconds", 0, "s"},
-                                 {at + "factor_seconds", 0, "s"}});
-  }
+  add_compare_series(scenario, series);
   series.insert(series.end(), {{"compliance/probes", 0, "1"},
                                {"compliance/new_probes", 0, "1"},
                                {"compliance/reused_probes", 0, "1"},
@@ -241,12 +179,6 @@ std::vector<io::Field> shaft_fields(const Simulation& simulation, const State& s
 }
 
 }  // namespace
-
-std::string build_description()
-{
-  return std::string("trocar ") + build_info::version + " (" + build_info::git_commit + ", " +
-         build_info::build_type + ", " + build_info::compiler + "), PETSc " + petsc_version();
-}
 
 Recorder::Recorder(const Simulation& simulation, const Invocation& invocation,
                    const std::vector<core::ResolvedOption>& options)

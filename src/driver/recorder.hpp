@@ -28,7 +28,4 @@ class Recorder
   std::optional<io::Results> results_;  ///< on rank 0 only
 };
 
-/// Versions, commit and build of this program, one line.
-std::string build_description();
-
 }  // namespace trocar::driver

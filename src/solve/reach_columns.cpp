@@ -139,23 +139,9 @@ void ReachColumns::settle(const Batch& batch)
   }
 }
 
-void ReachColumns::add_units(const std::vector<int>& positions)
+/// Reach of a batch, the columns active in each of its supernodes, and its right-hand sides.
+void ReachColumns::plan(Batch& batch) const
 {
-  Batch batch;
-  std::vector<int> order;
-  for (int k = 0; k < static_cast<int>(positions.size()); ++k)
-    if (positions[static_cast<std::size_t>(k)] >= 0) order.push_back(k);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return positions[static_cast<std::size_t>(a)] < positions[static_cast<std::size_t>(b)];
-  });
-  for (int k : order) {
-    batch.position.push_back(positions[static_cast<std::size_t>(k)]);
-    batch.slot.push_back(size_ + k);
-  }
-  const auto count = static_cast<Eigen::Index>(batch.slot.size());
-  batch.gram = MatX::Zero(count, count);
-  batch.cross = MatX::Zero(count, size_);
-  enlarge(static_cast<int>(positions.size()));
   batch.place.assign(static_cast<std::size_t>(factor_->supernodes()), -1);
   for (int p : batch.position)
     for (int s = factor_->supernode_at(p); s >= 0 && batch.place[static_cast<std::size_t>(s)] < 0;
@@ -189,6 +175,26 @@ void ReachColumns::add_units(const std::vector<int>& positions)
       batch.Y.back()(batch.position[static_cast<std::size_t>(j)] - node.first, j - batch.low[k]) =
           1.0;
   }
+}
+
+void ReachColumns::add_units(const std::vector<int>& positions)
+{
+  Batch batch;
+  std::vector<int> order;
+  for (int k = 0; k < static_cast<int>(positions.size()); ++k)
+    if (positions[static_cast<std::size_t>(k)] >= 0) order.push_back(k);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return positions[static_cast<std::size_t>(a)] < positions[static_cast<std::size_t>(b)];
+  });
+  for (int k : order) {
+    batch.position.push_back(positions[static_cast<std::size_t>(k)]);
+    batch.slot.push_back(size_ + k);
+  }
+  const auto count = static_cast<Eigen::Index>(batch.slot.size());
+  batch.gram = MatX::Zero(count, count);
+  batch.cross = MatX::Zero(count, size_);
+  enlarge(static_cast<int>(positions.size()));
+  plan(batch);
   for (int s : batch.reach) eliminate(s, batch);
   settle(batch);
 }

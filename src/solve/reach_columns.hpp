@@ -42,6 +42,7 @@ class ReachColumns
   base::Block values(int s) const;
   void enlarge(int count);
   void append(int s, const core::MatX& Y, const int* slots);
+  void plan(Batch& batch) const;
   void settle(const Batch& batch);
   static void solve_rows(const SupernodalFactor::Supernode& node, int begin, int end,
                          const int* first_position, const int* last_position, core::MatX& Y);

@@ -1,0 +1,92 @@
+#include "driver/provenance.hpp"
+
+#include <gmsh.h>
+#include <hdf5.h>
+
+#include <ctime>
+
+#include "base/petsc.hpp"
+#include "core/words.hpp"
+#include "driver/build_info.hpp"
+
+namespace trocar::driver {
+namespace {
+
+std::string utc_now()
+{
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  return text;
+}
+
+std::string petsc_version()
+{
+  return std::to_string(PETSC_VERSION_MAJOR) + "." + std::to_string(PETSC_VERSION_MINOR) + "." +
+         std::to_string(PETSC_VERSION_SUBMINOR);
+}
+
+std::string mpi_version()
+{
+  char text[MPI_MAX_LIBRARY_VERSION_STRING];
+  int length = 0;
+  MPI_Get_library_version(text, &length);
+  return {text, static_cast<std::size_t>(length)};
+}
+
+/// Every option in PETSc's database, its own solvers' included, as one line.
+std::string petsc_options()
+{
+  char* text = nullptr;
+  TROCAR_PETSC(PetscOptionsGetAll(nullptr, &text));
+  const std::string all = text;
+  TROCAR_PETSC(PetscFree(text));
+  return all;
+}
+
+}  // namespace
+
+std::string build_description()
+{
+  return std::string("trocar ") + build_info::version + " (" + build_info::git_commit + ", " +
+         build_info::build_type + ", " + build_info::compiler + "), PETSc " + petsc_version();
+}
+
+io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
+                          const std::vector<core::ResolvedOption>& options,
+                          const std::string& solver)
+{
+  io::Provenance p;
+  p.texts = {{"program", "trocar"},
+             {"version", build_info::version},
+             {"git_commit", build_info::git_commit},
+             {"build_type", build_info::build_type},
+             {"compiler", build_info::compiler},
+             {"created_utc", utc_now()},
+             {"command_line", core::join(invocation.arguments, " ")},
+             {"mpi_ranks", std::to_string(simulation.space().comm().size())},
+             {"petsc_version", petsc_version()},
+             {"hdf5_version", H5_VERS_INFO},
+             {"gmsh_version", GMSH_API_VERSION},
+             {"mpi_version", mpi_version()},
+             {"options_file_name", invocation.options_file},
+             {"options_file", invocation.options_file_text},
+             {"petsc_options", petsc_options()},
+             {"tissue_solver", solver},
+             {"mesh_file", simulation.scenario().mesh.file},
+             {"mesh_hash_fnv1a", simulation.scenario().mesh.hash}};
+  std::vector<std::string> names, values, units, sources;
+  for (const core::ResolvedOption& option : options) {
+    names.push_back(option.name);
+    values.push_back(option.value);
+    units.push_back(option.unit);
+    sources.push_back(option.source);
+  }
+  p.tables = {{"options/name", names},
+              {"options/value", values},
+              {"options/unit", units},
+              {"options/source", sources}};
+  return p;
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "driver/option_source.hpp"
+#include "driver/simulation.hpp"
+#include "io/results.hpp"
+
+namespace trocar::driver {
+
+/// Versions, commit and build of this program, one line.
+std::string build_description();
+
+/// What a result file says about where it comes from. `solver` describes the tissue's solver.
+io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
+                          const std::vector<core::ResolvedOption>& options,
+                          const std::string& solver);
+
+}  // namespace trocar::driver
