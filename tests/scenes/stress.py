@@ -1,10 +1,11 @@
 """The stress table: hard scenarios, each either right by its own check or rejected with a reason.
 
 usage: stress.py PROGRAM ROOT [--long] [--only WORD] [--markdown FILE]
-Writes stress.csv in the working folder. Without --long only a quick slice runs.
+Writes results/stress.csv below the working folder. Without --long only a quick slice runs.
 """
 import argparse
 import csv
+import os
 import sys
 import time
 
@@ -56,7 +57,8 @@ def arguments():
 
 
 def write_csv(rows):
-    with open("stress.csv", "w", newline="") as stream:
+    os.makedirs("results", exist_ok=True)
+    with open(os.path.join("results", "stress.csv"), "w", newline="") as stream:
         writer = csv.DictWriter(stream, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)
@@ -86,7 +88,7 @@ def main():
         write_markdown(args.markdown, table.rows)
     harness.problems += [row["scenario"] for row in table.rows if not row["good"]]
     print(f"{len(table.rows)} cases, {len(harness.problems)} failed, {time.time() - began:.0f} s; "
-          "wrote stress.csv")
+          "wrote results/stress.csv")
     harness.finish()
 
 
