@@ -20,12 +20,12 @@ WAYS = {"frozen": {"constraint_direction_max": 1}, "one update": {"constraint_di
 
 
 def end_of(folder, h, way):
-    """Place of the tip, force and moment of the base at the end; solves and seconds of the run."""
+    """Place of the tip, force and moment of the base at the end; half-sweeps and seconds."""
     with run("sideways.opts", folder / "run",
              {"time_step": h, "output_every": 100000, **WAYS[way]}) as r:
         needle = r["history/needle/needle"]
         return (needle["tip"][-1], needle["base_force"][-1], needle["base_moment"][-1],
-                int(r["ledger"].attrs["solves"]), r["history/step_seconds"][:].sum())
+                int(r["ledger"].attrs["half_sweeps"]), r["history/step_seconds"][:].sum())
 
 
 def main():
@@ -39,19 +39,19 @@ def main():
     rows = []
     for h in steps:
         for way in WAYS:
-            x, f, m, solves, seconds = end_of(folder, h, way)
+            x, f, m, half_sweeps, seconds = end_of(folder, h, way)
             rows.append({"step_s": h, "directions": way,
                          "tip_error_m": f"{np.linalg.norm(x - tip):.2e}",
                          "force_error": f"{np.linalg.norm(f - force) / np.linalg.norm(force):.2e}",
                          "moment_error": f"{np.linalg.norm(m - moment) / np.linalg.norm(moment):.2e}",
-                         "solves": solves, "seconds": f"{seconds:.3f}"})
+                         "half_sweeps": half_sweeps, "seconds": f"{seconds:.3f}"})
     write_table(folder / "directions.csv", rows)
     figure, axis = plt.subplots(figsize=(6, 4.2), constrained_layout=True)
     for way in WAYS:
         mine = [row for row in rows if row["directions"] == way]
-        axis.loglog([row["solves"] for row in mine], [float(row["force_error"]) for row in mine],
+        axis.loglog([row["half_sweeps"] for row in mine], [float(row["force_error"]) for row in mine],
                     "o-", label=way)
-    axis.set(xlabel="solves of the tissue", ylabel="error of the base force",
+    axis.set(xlabel="half-sweeps of the tissue", ylabel="error of the base force",
              title="Sideways needle: directions within the step")
     axis.grid(alpha=0.3, which="both")
     axis.legend(frameon=False)

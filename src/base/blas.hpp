@@ -8,8 +8,7 @@ using core::MatX;
 using Block = Eigen::Map<const MatX, 0, Eigen::OuterStride<>>;  ///< columns of a larger array
 using Part = Eigen::Ref<MatX, 0, Eigen::OuterStride<>>;         ///< the same, to be written to
 
-/// Products and solves of large dense blocks by the BLAS that the program is linked with, which is
-/// up to twice as fast as Eigen's own.
+/// Products and solves of large dense blocks by the BLAS that the program is linked with.
 MatX product(const Block& A, const MatX& B);                    ///< A B
 MatX transposed_product(const MatX& A, const Block& B);         ///< Aᵀ B
 void subtract_product(const Block& A, const Block& B, Part C);  ///< C -= A B

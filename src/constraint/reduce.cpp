@@ -94,21 +94,6 @@ core::VecX probe_forces(const Set& set, const core::VecX& lambda)
   return rows_on_probes(set, set.probed_nodes()).transpose() * lambda;
 }
 
-fem::OwnedField tissue_forces(const Set& set, const core::VecX& lambda, const fem::Space& space)
-{
-  fem::OwnedField forces = space.zero();
-  for (int i = 0; i < set.size(); ++i) {
-    const Row& row = set.rows()[static_cast<std::size_t>(i)];
-    for (std::size_t a = 0; a < row.anchor.node.size(); ++a) {
-      const int local = space.owned_local(row.anchor.node[a]);
-      if (local >= 0)
-        forces.node(local) +=
-            row.anchor.weight[static_cast<Eigen::Index>(a)] * lambda[i] * row.direction;
-    }
-  }
-  return forces;
-}
-
 core::VecX body_forces(const Set& set, const core::VecX& lambda, int body, Eigen::Index dofs)
 {
   return levers(set, body, dofs) * lambda;

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "constraint/set.hpp"
-#include "fem/space.hpp"
 
 namespace trocar::constraint {
 
@@ -15,9 +14,6 @@ law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
 
 /// Ĥᵀλ: forces on the set's probed nodes [N], three each.
 core::VecX probe_forces(const Set& set, const core::VecX& lambda);
-
-/// Hᵀλ on the tissue: nodal forces of the owned nodes [N]. Not collective.
-fem::OwnedField tissue_forces(const Set& set, const core::VecX& lambda, const fem::Space& space);
 
 /// H_nᵀλ of one small body on all its dofs [N, N m]; the body feels the negative.
 core::VecX body_forces(const Set& set, const core::VecX& lambda, int body, Eigen::Index dofs);

@@ -8,9 +8,8 @@ namespace trocar::driver {
 void Simulation::account(const State& old, const core::TimeStep& now, const Pass& pass,
                          const StepReport& report, State& next) const
 {
-  const bool pushed = pass.lambda.lambda.size() > 0;
   const tissue::Work tissue =
-      tissue_.work(old.tissue, next.tissue, now, pushed ? pass.push : space_.zero());
+      tissue_.work(old.tissue, next.tissue, now, solve::spread(pass.probes, pass.forces, space_));
   EnergyAccount& energy = next.energy;
   energy = old.energy;
   energy.elastic = tissue.elastic;

@@ -151,13 +151,12 @@ std::set<int> planned_tets(const needle::BaseMotion& motion, const mesh::Mesh& m
 }  // namespace
 
 std::vector<needle::NeedleSettings> read_needles(core::Options& options, const mesh::Mesh& mesh,
-                                                 double end, const base::Comm& comm)
+                                                 const mesh::Locator& locator, double end,
+                                                 const base::Comm& comm)
 {
   const std::vector<std::string> names = options.names("needles");
   std::vector<needle::NeedleSettings> needles;
-  if (names.empty()) return needles;
   check_needle_names(names);
-  const mesh::Locator locator(mesh);
   for (const std::string& name : names) {
     needles.push_back(read_needle(options, name, comm));
     check_needle(needles.back(), mesh, locator, end);
@@ -166,12 +165,11 @@ std::vector<needle::NeedleSettings> read_needles(core::Options& options, const m
 }
 
 std::vector<int> planned_nodes(const std::vector<needle::NeedleSettings>& needles,
-                               const mesh::Mesh& mesh, int layers)
+                               const mesh::Mesh& mesh, const mesh::Locator& locator, int layers)
 {
   constexpr std::size_t most_nodes = 1000;
   std::vector<int> nodes;
-  if (layers == 0 || needles.empty()) return nodes;
-  const mesh::Locator locator(mesh);
+  if (layers == 0) return nodes;
   std::set<int> tube;
   for (const needle::NeedleSettings& settings : needles)
     for (int tet : planned_tets(settings.motion, mesh, locator))

@@ -221,6 +221,30 @@ OutputSettings read_output(Options& options)
   return output;
 }
 
+void read_compliance(Options& options, tissue::TissueSettings& tissue)
+{
+  const std::map<std::string, solve::Provider> providers{
+      {"auto", tissue_solver_given() ? solve::Provider::ksp : solve::Provider::automatic},
+      {"supernodal", solve::Provider::supernodal},
+      {"ksp", solve::Provider::ksp},
+      {"ksp_block", solve::Provider::ksp_block}};
+  tissue.provider = providers.at(options.text("compliance_provider"));
+  tissue.most_memory = options.real("compliance_memory");
+  tissue.reuse_columns = options.text("compliance_reuse") == "exact";
+}
+
+/// The needles, and the nodes they are planned to reach, when a factor can put these last.
+void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
+{
+  const int layers = options.integer("compliance_tube");
+  if (options.names("needles").empty()) return;
+  const mesh::Locator locator(scenario.mesh);
+  scenario.needles = read_needles(options, scenario.mesh, locator, scenario.time.end, comm);
+  const solve::Provider provider = scenario.tissue.provider;
+  if (provider == solve::Provider::automatic || provider == solve::Provider::supernodal)
+    scenario.tissue.pinned = planned_nodes(scenario.needles, scenario.mesh, locator, layers);
+}
+
 void refuse_dashpots_without_time(const Scenario& scenario)
 {
   if (scenario.time.analysis == Analysis::dynamic || scenario.time.end > 0.0) return;
@@ -256,17 +280,8 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.tissue = read_tissue(options, scenario.mesh, comm);
   scenario.insertion = read_insertion(options, scenario.mesh);
   refuse_dashpots_without_time(scenario);
-  scenario.needles = read_needles(options, scenario.mesh, scenario.time.end, comm);
-  const std::map<std::string, solve::Provider> providers{
-      {"auto", tissue_solver_given() ? solve::Provider::ksp : solve::Provider::automatic},
-      {"supernodal", solve::Provider::supernodal},
-      {"ksp", solve::Provider::ksp},
-      {"ksp_block", solve::Provider::ksp_block}};
-  scenario.tissue.most_memory = options.real("compliance_memory");
-  scenario.tissue.reuse_columns = options.text("compliance_reuse") == "exact";
-  scenario.tissue.pinned =
-      planned_nodes(scenario.needles, scenario.mesh, options.integer("compliance_tube"));
-  scenario.tissue.provider = providers.at(options.text("compliance_provider"));
+  read_compliance(options, scenario.tissue);
+  add_needles(options, scenario, comm);
   options.refuse_unread();
   add_warnings(scenario);
   return scenario;

@@ -82,7 +82,7 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
   const int most = now.is_static ? most_linearisations : scenario_.time.newton_max;
   double residual = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= most; ++iteration) {
-    const State iterate = next;
+    const fem::OwnedField iterate = most > 1 ? next.tissue.u : fem::OwnedField{};
     const double last_residual = residual;
     const Pass pass = linearised_step(old, now, next, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
@@ -93,7 +93,7 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
       return {std::move(next), std::move(report), {}};
     }
     if (pass.rows.set.empty() && residual > last_residual)  // overshoot: half the increment
-      next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.tissue.u.value);
+      next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.value);
   }
   const std::string what = residual <= balance_tolerance
                                ? "the gaps of the rows stay open"
@@ -193,7 +193,6 @@ std::optional<std::string> Simulation::solve_constraints(
 
   pass.mobility = law::mobility(problem);
   pass.forces = constraint::probe_forces(set, pass.lambda.lambda);
-  pass.push = constraint::tissue_forces(set, pass.lambda.lambda, space_);
   for (std::size_t i = 0; i < needles_.size(); ++i)
     pass.levers.push_back(
         constraint::body_forces(set, pass.lambda.lambda, static_cast<int>(i), needles_[i].dofs()));
@@ -235,10 +234,10 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
   fem::OwnedField r = tissue_.residual(old.tissue, next.tissue.u, now, scale);
   const bool pushed = pass.lambda.lambda.size() > 0;
   if (pushed) {
-    fem::OwnedField push = pass.push;
-    tissue_.fixed().clear(push);
-    r.value += push.value;
-    scale += space_.norm(push);
+    fem::OwnedField forces = solve::spread(pass.probes, pass.forces, space_);
+    tissue_.fixed().clear(forces);
+    r.value += forces.value;
+    scale += space_.norm(forces);
   }
   residual = space_.norm(r) / scale;
   for (std::size_t i = 0; i < needles_.size(); ++i) {
@@ -267,14 +266,15 @@ bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const
 
 void Simulation::accept(const Pass& pass, State& next, StepReport& report) const
 {
+  std::optional<fem::GlobalField> u;  // gathered only when a tip does something
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     NeedleReport& needle = report.needles[i];
     if (!pass.rows.set.empty())
       needle.coupling = insertion_->accept(next.insertions[i], pass.rows.of_needle[i], pass.lambda);
     if (needle.coupling.tip != insertion::TipOutcome::holds) {
-      const fem::GlobalField u = space_.gather(next.tissue.u);
+      if (!u) u = space_.gather(next.tissue.u);
       insertion_->settle(next.insertions[i], needle.coupling, next.needles[i].shaft,
-                         {scenario_.mesh, *locator_, u});
+                         {scenario_.mesh, *locator_, *u});
     }
     needle.tip = next.needles[i].shaft.tip();
     needle.depth = insertion_->depth(next.insertions[i]);

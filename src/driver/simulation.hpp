@@ -123,7 +123,6 @@ class Simulation
     core::VecX mobility;             ///< W_ii, 0 on rows that nothing can move [m/N]
     solve::Probes probes;            ///< tissue nodes that the rows hold
     core::VecX forces;               ///< Ĥᵀλ on them [N]
-    fem::OwnedField push;            ///< Hᵀλ on the tissue [N]
     std::vector<core::VecX> levers;  ///< H_nᵀλ on each needle
   };
 

@@ -90,7 +90,7 @@ std::vector<bool> Insertion::lateral_points(const InsertionState& state) const
   if (placement.placement == Placement::crossings || straight(state.path)) return lateral;
   for (std::size_t k = 1; k < count; ++k) {
     const int tet = state.path.sites[k].tet;
-    const double edge = arc_tolerance(*mesh_, tet) / relative_tolerance;
+    const double edge = local_edge(*mesh_, tet);
     const bool last_of_tet = k + 1 < count && tet != state.path.sites[k + 1].tet;
     lateral[k] = last_of_tet || placement.spacing >= placement.merge * edge;
   }

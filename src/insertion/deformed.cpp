@@ -19,11 +19,6 @@ Deformed::Deformed(const mesh::Mesh& mesh, const mesh::Locator& locator, const f
 {
 }
 
-Vec3 Deformed::displacement(const constraint::Anchor& anchor) const
-{
-  return anchor.mean([this](int node) -> Vec3 { return u_->node(node); });
-}
-
 Vec3 Deformed::position(const constraint::Anchor& anchor) const
 {
   return anchor.mean([this](int node) -> Vec3 {

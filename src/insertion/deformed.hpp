@@ -14,8 +14,7 @@ class Deformed
  public:
   Deformed(const mesh::Mesh& mesh, const mesh::Locator& locator, const fem::GlobalField& u);
 
-  Vec3 displacement(const constraint::Anchor& anchor) const;  ///< [m]
-  Vec3 position(const constraint::Anchor& anchor) const;      ///< where the anchor is now [m]
+  Vec3 position(const constraint::Anchor& anchor) const;  ///< where the anchor is now [m]
 
   Vec3 place(const Vec3& X, int tet) const;  ///< where the reference place X in a tet is now [m]
 

@@ -14,6 +14,9 @@ Insertion::Insertion(const mesh::Mesh& mesh, const mesh::Locator& locator,
       membranes_(mesh, settings_.puncture)
 {
   settings_.tip.cutting.resize(mesh.volumes.size(), 0.0);
+  const auto& cutting = settings_.tip.cutting;
+  resists_ = membranes_.any() ||
+             std::any_of(cutting.begin(), cutting.end(), [](double f) { return f > 0.0; });
 }
 
 InsertionState Insertion::start(const needle::Needle& needle) const
@@ -53,7 +56,7 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
     if (!inside) return old;
     // Beside the old channel the tip cuts a new one; the old one is then forgotten.
     const double beside = distance(old.path, *inside);
-    if (beside > 0.3 * arc_tolerance(*mesh_, first_tet(old.path)) / relative_tolerance)
+    if (beside > 0.3 * local_edge(*mesh_, first_tet(old.path)))
       return enter(old, predicted, tissue);
   }
   // Beyond its tets the map of the nearest end is continued: the tip may be out at either side.
@@ -85,7 +88,7 @@ bool Insertion::astray(const InsertionState& state, const needle::Shaft& shaft,
   // The tip itself may touch the surface, and stand in the dent it makes.
   double clear = 1e-3 * shaft.length;
   if (state.phase == Phase::contact) {
-    const double edge = arc_tolerance(*mesh_, state.tip.tet) / relative_tolerance;
+    const double edge = local_edge(*mesh_, state.tip.tet);
     clear = 2.0 * std::max(settings_.tip.radius, edge);
   }
   for (std::size_t e = 0; e + 1 < shaft.x.size(); ++e) {
@@ -106,12 +109,12 @@ InsertionState Insertion::enter(const InsertionState& old, const needle::Shaft& 
   InsertionState next;
   next.tip.punctures = old.tip.punctures;
   next.path.first_id = old.path.first_id + static_cast<int>(old.path.sites.size());
-  grow(next.path, *entry, *mesh_, *locator_, settings_.placement);
   if (border(-1, locator_->tet_at(*entry), *entry) > 0.0) {
     touch_surface(next, *entry);
     next.tip.offset = tissue.position(next.tip.hold) - tissue.place(*entry, next.tip.tet);
     return next;
   }
+  grow(next.path, *entry, *mesh_, *locator_, settings_.placement);
   grow_to(next, *X);
   if (first_tet(next.path) < 0) return old;
   next.phase = Phase::inserted;

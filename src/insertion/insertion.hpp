@@ -166,6 +166,7 @@ class Insertion
   const mesh::Locator* locator_;
   InsertionSettings settings_;
   Membranes membranes_;
+  bool resists_;  ///< some border or tissue resists the tip
 };
 
 }  // namespace trocar::insertion

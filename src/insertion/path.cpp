@@ -81,14 +81,6 @@ void add_pieces(Path& path, const std::vector<Passage>& passages,
   }
 }
 
-double mean_edge(const std::array<Vec3, 4>& p)
-{
-  double sum = 0.0;
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t b = a + 1; b < 4; ++b) sum += (p[b] - p[a]).norm();
-  return sum / 6.0;
-}
-
 void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
 {
   const mesh::Tet& nodes = mesh.tets[static_cast<std::size_t>(tet)];
@@ -102,9 +94,18 @@ void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec
 
 }  // namespace
 
+double local_edge(const mesh::Mesh& mesh, int tet)
+{
+  const auto p = mesh::corners(mesh, tet);
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b) sum += (p[b] - p[a]).norm();
+  return sum / 6.0;
+}
+
 double arc_tolerance(const mesh::Mesh& mesh, int tet)
 {
-  return relative_tolerance * mean_edge(mesh::corners(mesh, tet));
+  return relative_tolerance * local_edge(mesh, tet);
 }
 
 void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator& locator,
@@ -131,7 +132,7 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
     path.crossings.push_back(arc);
     if (settings.placement != Placement::crossings) continue;
     const int tet = lowest_tet_at(tets, c.t, 1.0);
-    const double shortest = settings.merge * mean_edge(mesh::corners(mesh, tet));
+    const double shortest = settings.merge * local_edge(mesh, tet);
     // The tolerance keeps an exact tie from being decided by round-off.
     if (!path.sites.empty() && arc - path.sites.back().arc < shortest * (1.0 - relative_tolerance))
       continue;

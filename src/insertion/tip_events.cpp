@@ -39,7 +39,7 @@ double Insertion::border(int from, int to, const Vec3& X) const
 void Insertion::touch_surface(InsertionState& state, const Vec3& X) const
 {
   const int tet = locator_->tet_at(X);
-  const double edge = arc_tolerance(*mesh_, tet) / relative_tolerance;
+  const double edge = local_edge(*mesh_, tet);
   const Vec3 normal = face_normal(*mesh_, tet, X);
   const int first_id = state.path.first_id;
   state.path = {};
@@ -60,13 +60,14 @@ void Insertion::grow_to(InsertionState& state, const Vec3& X) const
 {
   state.tip.threshold = 0.0;
   state.tip.wall = false;
+  if (!resists_) return grow(state.path, X, *mesh_, *locator_, settings_.placement);
   const Path before = state.path;
   grow(state.path, X, *mesh_, *locator_, settings_.placement);
   for (std::size_t i = std::max<std::size_t>(before.pieces.size(), 1); i < state.path.pieces.size();
        ++i) {
     const int from = state.path.pieces[i - 1].tet, to = state.path.pieces[i].tet;
     if (from == to) continue;
-    const double edge = arc_tolerance(*mesh_, std::max(from, to)) / relative_tolerance;
+    const double edge = local_edge(*mesh_, std::max(from, to));
     const double arc = state.path.pieces[i].begin;
     const double part = (arc - before.length()) / (X - before.vertex.back()).norm();
     const Vec3 place = before.vertex.back() + part * (X - before.vertex.back());
@@ -107,7 +108,7 @@ void Insertion::press(InsertionState& state, double arc, const Deformed& tissue)
   tip.pressed = was_pressed || arc >= state.path.length() - tolerance;
   if (!tip.pressed || was_pressed) return;
   const Vec3& X = state.path.vertex.back();
-  const double radius = std::max(settings_.tip.radius, tolerance / relative_tolerance);
+  const double radius = std::max(settings_.tip.radius, local_edge(*mesh_, tet));
   const Vec3 normal = face_normal(*mesh_, tet, X);
   tip.tet = tet;
   tip.hold = tip_support(*mesh_, *locator_, X, tet, radius, tip.wall ? &normal : nullptr);
@@ -132,7 +133,7 @@ Vec3 Insertion::lead(const InsertionState& state, const needle::Shaft& shaft,
 bool Insertion::stand(InsertionState& state, const needle::Shaft& shaft,
                       const Deformed& tissue) const
 {
-  const double edge = arc_tolerance(*mesh_, state.tip.tet) / relative_tolerance;
+  const double edge = local_edge(*mesh_, state.tip.tet);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
   const Vec3 ahead = shaft.tip() + lead(state, shaft, tissue) + edge * tangent;
   const auto entry = tissue.entry(shaft.x.front(), ahead);

@@ -10,6 +10,14 @@
 #include "law/gauss_seidel.hpp"
 
 namespace trocar::law {
+
+VecX mobility(const Problem& problem)
+{
+  // What is prescribed has columns that are exactly zero. A relative cut would also take rows of
+  // stiff bodies beside very soft ones.
+  return problem.W.diagonal().cwiseMax(0.0);
+}
+
 namespace {
 
 constexpr int most_interior_steps = 100;
@@ -116,17 +124,6 @@ Multipliers solve_condensed(const Problem& problem, const Settings& settings)
   return result;
 }
 
-}  // namespace
-
-VecX mobility(const Problem& problem)
-{
-  // What is prescribed has columns that are exactly zero. A relative cut would also take rows of
-  // stiff bodies beside very soft ones.
-  return problem.W.diagonal().cwiseMax(0.0);
-}
-
-namespace {
-
 /// Half the width and the middle of every row's interval of multipliers [N], no wider than `reach`
 /// times what holds the row alone: huge and infinite limits would drown the rest in round-off.
 struct Intervals
@@ -158,7 +155,8 @@ Problem restrict(const Problem& problem, const std::vector<int>& rows, const Int
   part.W = problem.W(rows, rows);
   // A soft row is a hard one in series with its softness.
   if (problem.softness.size() > 0) part.W.diagonal() += problem.softness(rows);
-  part.g = (problem.g + problem.W * interval.middle)(rows);
+  part.g = problem.g(rows);
+  if (!interval.middle.isZero(0.0)) part.g += (problem.W * interval.middle)(rows);
   part.bound = interval.half(rows);
   part.start = (problem.start - interval.middle)(rows);
   for (int row : rows) {

@@ -28,6 +28,10 @@ struct Probes
   int size() const { return static_cast<int>(3 * nodes.size() + wide.size()); }
 };
 
+/// Sᵀ f: nodal forces [N] of the owned nodes from f [N] by slot of the probes; fixed dofs get
+/// theirs as well. Not collective.
+OwnedField spread(const Probes& probes, const core::VecX& f, const fem::Space& space);
+
 /// How a compliance block was come by, in dofs.
 struct ComplianceReport
 {

@@ -41,14 +41,7 @@ OwnedField KspStepSolver::finish(const HalfSolution& half, const Probes& probes,
 {
   OwnedField u{half.value};
   if (probes.size() == 0) return u;
-  OwnedField forces = space_->zero();
-  for (std::size_t k = 0; k < probes.nodes.size(); ++k) {
-    const int local = space_->owned_local(probes.nodes[k]);
-    if (local >= 0) forces.node(local) = f.segment<3>(3 * static_cast<Eigen::Index>(k));
-  }
-  for (std::size_t k = 0; k < probes.wide.size(); ++k)
-    forces.value +=
-        f[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] * probes.wide[k]->vector.value;
+  OwnedField forces = spread(probes, f, *space_);
   fixed_->clear(forces);
   u.value += system_.solve(forces).value;
   fixed_->clear(u);

@@ -242,11 +242,4 @@ void ReachColumns::push(const VecX& f, VecX& y) const
   }
 }
 
-double ReachColumns::bytes() const
-{
-  double count = 0.0;
-  for (const Piece& piece : pieces_) count += static_cast<double>(piece.value.size());
-  return 8.0 * count;
-}
-
 }  // namespace trocar::solve

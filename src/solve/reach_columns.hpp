@@ -23,12 +23,10 @@ class ReachColumns
   /// Adds one dense vector (by position).
   void add_dense(const core::VecX& vector);
 
-  int size() const { return size_; }
   /// C of these slots.
   core::MatX block(const std::vector<int>& slots) const { return C_(slots, slots); }
   core::VecX at(const core::VecX& y) const;             ///< Xᵀ y, by slot
   void push(const core::VecX& f, core::VecX& y) const;  ///< y += X f, f by slot
-  double bytes() const;                                 ///< of X [B]
 
  private:
   /// The columns of X in one supernode.

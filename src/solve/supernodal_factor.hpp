@@ -32,7 +32,6 @@ class SupernodalFactor
   /// definite.
   void factorise(const std::vector<double>& values);
 
-  int size() const { return static_cast<int>(position_.size()); }
   int position(int dof) const { return position_[static_cast<std::size_t>(dof)]; }
   double bytes() const;  ///< of L [B], known from the analysis
   double flops() const;  ///< of one factorisation

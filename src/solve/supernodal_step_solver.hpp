@@ -10,8 +10,8 @@ namespace trocar::solve {
 
 /// Supernodal Cholesky on rank 0 (CHOLMOD, METIS on the graph of the free nodes): one forward and
 /// one backward half-sweep per step serve free motion, constraints and correction, and compliance
-/// columns cost a path of the elimination tree. Other ranks assemble and wait: on a few cores this
-/// is still far ahead of distributed solves (docs/theory.md section 8).
+/// columns cost a path of the elimination tree (docs/theory.md section 8). Other ranks assemble and
+/// wait.
 class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
 {
  public:
