@@ -54,6 +54,13 @@ std::vector<int> Set::probed_nodes() const
   return nodes;
 }
 
+core::VecX Set::starts() const
+{
+  core::VecX start(size());
+  for (int i = 0; i < size(); ++i) start[i] = rows_[static_cast<std::size_t>(i)].start;
+  return start;
+}
+
 law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
                     const std::vector<SmallBody>& bodies)
 {
@@ -89,9 +96,31 @@ law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
   return problem;
 }
 
+core::VecX row_displacements(const Set& set, const core::VecX& probed)
+{
+  return rows_on_probes(set, set.probed_nodes()) * probed;
+}
+
 core::VecX probe_forces(const Set& set, const core::VecX& lambda)
 {
   return rows_on_probes(set, set.probed_nodes()).transpose() * lambda;
+}
+
+double yielding(const Set& set, const std::vector<SmallBody>& bodies, const core::VecX& a,
+                const core::VecX& b)
+{
+  double sum = 0.0;
+  for (int i = 0; i < set.size(); ++i)
+    sum += set.rows()[static_cast<std::size_t>(i)].softness * a[i] * b[i];
+  for (std::size_t n = 0; n < bodies.size(); ++n) {
+    const Eigen::Index dofs = bodies[n].free_increment.size();
+    if (dofs == 0) continue;
+    const auto on_free = [&](const core::VecX& lambda) -> core::VecX {
+      return body_forces(set, lambda, static_cast<int>(n), bodies[n].held + dofs).tail(dofs);
+    };
+    sum += on_free(a).dot(bodies[n].factor.solve(on_free(b)));
+  }
+  return sum;
 }
 
 core::VecX body_forces(const Set& set, const core::VecX& lambda, int body, Eigen::Index dofs)

@@ -55,6 +55,7 @@ class Set
   int size() const { return static_cast<int>(rows_.size()); }
   void add(Row row) { rows_.push_back(std::move(row)); }
   const std::vector<Row>& rows() const { return rows_; }
+  core::VecX starts() const;  ///< multipliers to start from (rows) [N]
 
   /// File nodes with a non-zero weight, ascending: what the rows probe.
   std::vector<int> probed_nodes() const;

@@ -219,8 +219,19 @@ void add_compliance(std::vector<OptionSpec>& t)
       not_negative("compliance_memory", "0", "B",
                    "memory that the supernodal factor may take before auto falls back to "
                    "ksp_block; 0 = 70 % of what is free"),
-      choice("compliance_reuse", "exact", {"exact", "none"},
-             "keep columns from step to step while the operator stays, or build all in every step"),
+      choice("compliance_reuse", "exact", {"exact", "stale", "none"},
+             "keep columns from step to step as long as that is exact; or, as in the needle paper, "
+             "meet the laws with those of a factor that some steps of turning tissue share; or "
+             "build all in every step"),
+      count("compliance_stale_steps", "10", 1,
+            "linearisations that share a factor with compliance_reuse stale"),
+      flag("compliance_stale_error",
+           "with compliance_reuse stale, solve every step exactly as well and record the worst "
+           "displacement error"),
+      not_negative(
+          "compliance_lag", "1e-8", "1",
+          "equilibrium, as a part of the load, that a step of turning tissue must reach with "
+          "the factor of an earlier one, by several sweeps; 0 = factor in every step"),
       count("compliance_tube", "1", 0,
             "layers of nodes around the needles' planned paths that are eliminated last, so that "
             "their columns are a table; at most 3000 dofs and 10 % more work for the factor; 0 = "

@@ -60,6 +60,10 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                {"compliance/new_probes", 0, "1"},
                                {"compliance/reused_probes", 0, "1"},
                                {"compliance/build_seconds", 0, "s"},
+                               {"compliance/passes", 0, "1"},
+                               {"compliance/factor_age", 0, "1"},
+                               {"compliance/leftover_gap", 0, "m"},
+                               {"compliance/stale_error", 0, "m"},
                                {"time_linearisations", 0, "1"},
                                {"step_seconds", 0, "s"}});
   return series;
@@ -123,7 +127,9 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
   for (double value :
        {static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
         static_cast<double>(report.compliance.reused), build_seconds,
-        static_cast<double>(report.linearisations), seconds})
+        static_cast<double>(report.passes), static_cast<double>(simulation.tissue().factor_age()),
+        report.leftover_gap, report.stale_error, static_cast<double>(report.linearisations),
+        seconds})
     row.push_back({value});
   return row;
 }

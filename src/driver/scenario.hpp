@@ -32,7 +32,8 @@ struct OutputSettings
   int every = 1;
   bool displacement = true;
   bool velocity = false;
-  bool energy = false;  ///< keep the energy account
+  bool energy = false;       ///< keep the energy account
+  bool stale_error = false;  ///< solve stale steps exactly as well
   bool quiet = false;
 };
 

@@ -81,10 +81,11 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
   StepReport report;
   const int most = now.is_static ? most_linearisations : scenario_.time.newton_max;
   double residual = std::numeric_limits<double>::infinity();
+  core::VecX last;  // multipliers, to go on from
   for (int iteration = 1; iteration <= most; ++iteration) {
     const fem::OwnedField iterate = most > 1 ? next.tissue.u : fem::OwnedField{};
     const double last_residual = residual;
-    const Pass pass = linearised_step(old, now, next, report);  // 2 to 5
+    const Pass pass = linearised_step(old, now, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
     if (most == 1 || balanced(old, next, now, pass, residual)) {
@@ -105,7 +106,7 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
 // The step of both papers: every body moves freely, the rows that couple them are solved in one
 // small dense problem, and the bodies are corrected by it.
 Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeStep& now,
-                                             State& next, StepReport& report)
+                                             State& next, core::VecX& last, StepReport& report)
 {
   Pass pass;
   const tissue::FreeMotion tissue =
@@ -114,7 +115,7 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
   for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
-    pass = constrained_step(old, now, tissue, next, report);  // 3 to 5
+    pass = constrained_step(old, now, tissue, next, last, report);  // 3 to 5
     if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
   }
@@ -123,21 +124,6 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
     pass.trouble = "an element of the tissue would turn inside out";
   for (const needle::NeedleState& needle : next.needles)
     if (!needle.finite()) pass.trouble = "a needle's shape is not finite";
-  return pass;
-}
-
-Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
-                                              const tissue::FreeMotion& tissue, State& next,
-                                              StepReport& report)
-{
-  Pass pass;
-  std::vector<needle::Linearised> needles;
-  for (std::size_t i = 0; i < needles_.size(); ++i)
-    needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
-  pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
-  if (!pass.rows.set.empty())            // 4 W and g from the isolated compliance, then the laws
-    pass.trouble = solve_constraints(tissue, next.tissue.u, needles, pass, report);
-  if (!pass.trouble) correct(old, now, tissue, needles, pass, next, report);  // 5
   return pass;
 }
 
@@ -171,60 +157,6 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
     rows.of_needle.push_back(insertion_->add_rows(state.insertions[i], state.needles[i].shaft,
                                                   tissue, static_cast<int>(i), passing, rows.set));
   return rows;
-}
-
-std::optional<std::string> Simulation::solve_constraints(
-    const tissue::FreeMotion& tissue, const fem::OwnedField& u,
-    const std::vector<needle::Linearised>& needles, Pass& pass, StepReport& report)
-{
-  const constraint::Set& set = pass.rows.set;
-  std::vector<constraint::SmallBody> bodies;
-  for (const needle::Linearised& needle : needles)
-    bodies.push_back({needle.held, needle.factor, needle.free_increment});
-  pass.probes.nodes = set.probed_nodes();
-  solve::ComplianceReport compliance;
-  const core::MatX C = tissue_.compliance().block(pass.probes, compliance);
-  const core::VecX free = tissue_.at(pass.probes, tissue, u);
-  const law::Problem problem = constraint::reduce(set, C, free, bodies);
-  pass.lambda = law::solve(problem, scenario_.laws);
-  ++ledger_.constraint_solves;
-  if (!pass.lambda.converged) return pass.lambda.why;
-  law::compare(problem, scenario_.compare, report.trials);
-
-  pass.mobility = law::mobility(problem);
-  pass.forces = constraint::probe_forces(set, pass.lambda.lambda);
-  for (std::size_t i = 0; i < needles_.size(); ++i)
-    pass.levers.push_back(
-        constraint::body_forces(set, pass.lambda.lambda, static_cast<int>(i), needles_[i].dofs()));
-  report.rows = set.size();
-  report.rank = pass.lambda.rank;
-  report.condition = pass.lambda.condition;
-  report.nonunique = pass.lambda.nonunique;
-  report.iterations += pass.lambda.iterations;
-  report.residual = std::max(report.residual, pass.lambda.residual);
-  report.outer = std::max(report.outer, pass.lambda.outer);
-  report.contraction = std::max(report.contraction, pass.lambda.contraction);
-  report.compliance.probes = compliance.probes;
-  report.compliance.built += compliance.built;
-  report.compliance.reused += compliance.reused;
-  report.compliance.seconds += compliance.seconds;
-  return std::nullopt;
-}
-
-void Simulation::correct(const State& old, const core::TimeStep& now,
-                         const tissue::FreeMotion& tissue,
-                         const std::vector<needle::Linearised>& needles, const Pass& pass,
-                         State& next, StepReport& report)
-{
-  const bool pushed = pass.lambda.lambda.size() > 0;
-  next.tissue.u = tissue_.finish(tissue, pass.probes, pass.forces);
-  next.tissue.v.value = now.inverse() * (next.tissue.u.value - old.tissue.u.value);
-  report.needles.assign(needles_.size(), {});
-  for (std::size_t i = 0; i < needles_.size(); ++i) {
-    const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();
-    report.needles[i].base = needles_[i].base_wrench(next.needles[i], needles[i], lever);
-    next.needles[i] = needles_[i].correct(old.needles[i], next.needles[i], needles[i], lever, now);
-  }
 }
 
 bool Simulation::balanced(const State& old, const State& next, const core::TimeStep& now,

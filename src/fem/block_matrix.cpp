@@ -1,6 +1,7 @@
 #include "fem/block_matrix.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace trocar::fem {
 
@@ -25,6 +26,9 @@ BlockPattern::BlockPattern(const Space& space)
     column_.insert(column_.end(), row.begin(), row.end());
     row_start_.push_back(static_cast<int>(column_.size()));
   }
+  std::unordered_map<int, int> local_of;
+  for (int local = 0; local < space.local(); ++local) local_of[space.number(local)] = local;
+  for (int number : column_) local_column_.push_back(local_of.at(number));
   for (const Space::LocalTet& tet : space.tets()) {
     Slots slots{{}, 0};
     for (std::size_t p = 0; p < 10; ++p) {
@@ -32,7 +36,7 @@ BlockPattern::BlockPattern(const Space& space)
       const int nb = space.number(tet.nodes[static_cast<std::size_t>(block_pairs[p][1])]);
       const int row = row_of(std::min(na, nb));
       slots.at[p] = -1;
-      if (na > nb) slots.transpose = static_cast<std::uint16_t>(slots.transpose | (1U << p));
+      if (na > nb) slots.transposed = static_cast<std::uint16_t>(slots.transposed | (1U << p));
       if (row < 0) continue;
       const auto begin = column_.begin() + row_start_[static_cast<std::size_t>(row)];
       const auto end = column_.begin() + row_start_[static_cast<std::size_t>(row) + 1];
@@ -41,6 +45,25 @@ BlockPattern::BlockPattern(const Space& space)
     }
     slots_.push_back(slots);
   }
+}
+
+OwnedField BlockMatrix::times(const Space& space, const OwnedField& x) const
+{
+  const GhostedField from = space.with_ghosts(x);
+  GhostedField to{VecX::Zero(from.value.size())};
+  for (int row = 0; row < space.owned(); ++row) {
+    const Vec3 own = from.node(row);
+    Vec3 sum = Vec3::Zero();
+    for (int k = pattern_->row_start()[static_cast<std::size_t>(row)];
+         k < pattern_->row_start()[static_cast<std::size_t>(row) + 1]; ++k) {
+      const Eigen::Map<const core::Mat3> block(&values_[9 * static_cast<std::size_t>(k)]);
+      const int column = pattern_->local_column()[static_cast<std::size_t>(k)];
+      sum += block * from.node(column);
+      if (column != row) to.value.segment<3>(3 * column) += block.transpose() * own;
+    }
+    to.value.segment<3>(3 * row) += sum;
+  }
+  return space.sum_at_owners(to);
 }
 
 void BlockMatrix::fix(const Space& space, const Dirichlet& fixed)

@@ -10,9 +10,24 @@
 
 namespace trocar::fem {
 
+/// A 3x3 block, column-major: eight entries for one register, and the last.
+struct SplitBlock
+{
+  Eigen::Array<double, 8, 1> head;
+  double last;
+
+  core::Mat3 matrix() const
+  {
+    core::Mat3 block;
+    block.reshaped().head<8>() = head.matrix();
+    block(2, 2) = last;
+    return block;
+  }
+};
+
 /// Element matrix as the ten 3x3 blocks (a, b), a <= b, of a symmetric tet matrix, in the order
-/// 00 01 02 03 11 12 13 22 23 33.
-using ElementBlocks = std::array<core::Mat3, 10>;
+/// 00 01 02 03 11 12 13 22 23 33; transposed where the slots of the tet say so.
+using ElementBlocks = std::array<SplitBlock, 10>;
 
 /// The pairs (a, b) of ElementBlocks.
 inline constexpr std::array<std::array<int, 2>, 10> block_pairs{
@@ -27,17 +42,19 @@ class BlockPattern
 
   const std::vector<int>& row_start() const { return row_start_; }  ///< owned() + 1
   const std::vector<int>& column() const { return column_; }
+  /// Local node of every column.
+  const std::vector<int>& local_column() const { return local_column_; }
   std::size_t block_count() const { return column_.size(); }
 
   struct Slots
   {
-    std::array<int, 10> at;   ///< index of the block, -1 when its row is owned elsewhere
-    std::uint16_t transpose;  ///< bit p: block p is stored transposed
+    std::array<int, 10> at;    ///< index of the block, -1 when its row is owned elsewhere
+    std::uint16_t transposed;  ///< bit p: block p is stored transposed
   };
   const Slots& slots(std::size_t local_tet) const { return slots_[local_tet]; }
 
  private:
-  std::vector<int> row_start_, column_;
+  std::vector<int> row_start_, column_, local_column_;
   std::vector<Slots> slots_;
 };
 
@@ -57,17 +74,18 @@ class BlockMatrix
     const BlockPattern::Slots& slots = pattern_->slots(local_tet);
     for (std::size_t p = 0; p < 10; ++p) {
       if (slots.at[p] < 0) continue;
-      Eigen::Map<core::Mat3> target(&values_[9 * static_cast<std::size_t>(slots.at[p])]);
-      if (slots.transpose >> p & 1U)
-        target += blocks[p].transpose();
-      else
-        target += blocks[p];
+      double* target = &values_[9 * static_cast<std::size_t>(slots.at[p])];
+      Eigen::Map<Eigen::Array<double, 8, 1>>(target) += blocks[p].head;
+      target[8] += blocks[p].last;
     }
   }
 
   /// Zeroes rows and columns of fixed dofs; keeps their diagonal entry, so that the scale of the
   /// matrix does not depend on the supports.
   void fix(const Space& space, const Dirichlet& fixed);
+
+  /// A x. Collective.
+  OwnedField times(const Space& space, const OwnedField& x) const;
 
   const BlockPattern& pattern() const { return *pattern_; }
   const std::vector<double>& values() const { return values_; }

@@ -118,6 +118,19 @@ GhostedField Space::with_ghosts(const OwnedField& field) const
   return ghosted;
 }
 
+OwnedField Space::sum_at_owners(const GhostedField& field) const
+{
+  OwnedField owned{field.value.head(owned_dofs())};
+  if (comm_.size() == 1) return owned;
+  VecX received(3 * static_cast<int>(send_nodes_.size()));
+  TROCAR_MPI(MPI_Alltoallv(field.value.data() + owned_dofs(), receive_count_.data(),
+                           receive_start_.data(), MPI_DOUBLE, received.data(), send_count_.data(),
+                           send_start_.data(), MPI_DOUBLE, comm_.get()));
+  for (int i = 0; i < static_cast<int>(send_nodes_.size()); ++i)
+    owned.node(send_nodes_[index(i)]) += received.segment<3>(3 * i);
+  return owned;
+}
+
 GlobalField Space::gather(const OwnedField& field) const
 {
   VecX ordered(3 * global());

@@ -72,7 +72,9 @@ class Space
 
   OwnedField zero() const { return {VecX::Zero(owned_dofs())}; }
   GhostedField with_ghosts(const OwnedField& field) const;  ///< collective
-  GlobalField gather(const OwnedField& field) const;        ///< collective, on every rank
+  /// Sums every rank's contributions to a node at its owner. Collective.
+  OwnedField sum_at_owners(const GhostedField& field) const;
+  GlobalField gather(const OwnedField& field) const;  ///< collective, on every rank
   /// The owned part of a global field. Not collective.
   OwnedField restrict_to_owned(const GlobalField& field) const;
 

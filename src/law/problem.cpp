@@ -24,4 +24,29 @@ double kkt_residual(const Problem& problem, const VecX& lambda)
   return worst;
 }
 
+namespace {
+
+/// -1, 0, 1: at the lower end of its interval, within, at the upper one.
+int place(RowKind kind, double bound, double lambda)
+{
+  constexpr double round_off = 1e-9;
+  if (kind == RowKind::bilateral) return 0;
+  const double least = kind == RowKind::push ? 0.0 : -bound;
+  if (lambda >= bound * (1.0 - round_off)) return 1;
+  return lambda <= least + bound * round_off ? -1 : 0;
+}
+
+}  // namespace
+
+bool same_states(const Problem& problem, const VecX& a, const VecX& b)
+{
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (problem.normal[at] >= 0 && problem.friction[i] > 0.0) return false;
+    const RowKind kind = problem.kind[at];
+    if (place(kind, problem.bound[i], a[i]) != place(kind, problem.bound[i], b[i])) return false;
+  }
+  return true;
+}
+
 }  // namespace trocar::law

@@ -70,6 +70,10 @@ struct Multipliers
   double factor_seconds = 0.0;  ///< wall time of the pseudo-inverse or factor of W_bb
 };
 
+/// True when every row holds, slips or yields at both multipliers alike, and no bound follows
+/// another multiplier: between them the problem is linear.
+bool same_states(const Problem& problem, const VecX& a, const VecX& b);
+
 /// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
 /// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes).
 /// Rows with W_ii = 0 cannot move and do not count.

@@ -32,6 +32,9 @@ struct Probes
 /// theirs as well. Not collective.
 OwnedField spread(const Probes& probes, const core::VecX& f, const fem::Space& space);
 
+/// S u by slot of the probes, equal on every rank. Collective.
+core::VecX read(const Probes& probes, const OwnedField& u, const fem::Space& space);
+
 /// How a compliance block was come by, in dofs.
 struct ComplianceReport
 {
@@ -39,6 +42,22 @@ struct ComplianceReport
   int built = 0;         ///< columns computed for it
   int reused = 0;        ///< columns served from the cache
   double seconds = 0.0;  ///< this rank's wall time, factorisation excluded
+
+  ComplianceReport& operator+=(const ComplianceReport& more)
+  {
+    probes = more.probes;
+    built += more.built;
+    reused += more.reused;
+    seconds += more.seconds;
+    return *this;
+  }
+};
+
+/// Which columns of the isolated compliance a step may use.
+enum class Reuse {
+  exact,  ///< those of its own operator, or laws repeated until they are met as with those
+  stale,  ///< those of a factor that some steps share, the needle paper's way
+  none    ///< all are built in every step
 };
 
 /// The isolated compliance C = S A⁻¹ Sᵀ [m/N] on the probed dofs; S selects them. Dofs with a

@@ -20,20 +20,9 @@ HalfSolution KspStepSolver::begin(const OwnedField& b)
 
 core::VecX KspStepSolver::at(const Probes& probes, const HalfSolution& half)
 {
-  core::VecX read = core::VecX::Zero(probes.size());
-  for (std::size_t k = 0; k < probes.nodes.size(); ++k) {
-    const int local = space_->owned_local(probes.nodes[k]);
-    if (local >= 0)
-      read.segment<3>(3 * static_cast<Eigen::Index>(k)) = half.value.segment<3>(3 * local);
-  }
-  for (std::size_t k = 0; k < probes.wide.size(); ++k) {
-    OwnedField wide = probes.wide[k]->vector;
-    fixed_->clear(wide);
-    read[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] = wide.value.dot(half.value);
-  }
-  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, read.data(), static_cast<int>(read.size()), MPI_DOUBLE,
-                           MPI_SUM, space_->comm().get()));
-  return read;
+  OwnedField free{half.value};
+  fixed_->clear(free);
+  return read(probes, free, *space_);
 }
 
 OwnedField KspStepSolver::finish(const HalfSolution& half, const Probes& probes,

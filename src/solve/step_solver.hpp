@@ -41,6 +41,12 @@ class StepSolver
   virtual OwnedField finish(const HalfSolution& half, const Probes& probes,
                             const core::VecX& f) = 0;
   virtual IsolatedCompliance& compliance() = 0;
+  /// The operator has become about R A Rᵀ, R the rotations of the nodes in file order: from now on
+  /// every answer is R A⁻¹ Rᵀ with the factor as it is. Empty: as factored. False when the solver
+  /// cannot.
+  virtual bool turn(const std::vector<core::Mat3>& /*R*/) { return false; }
+  /// About how many sweeps cost as much as a factorisation, by counts of their work.
+  virtual double sweeps_per_factor() const { return 0.0; }
   /// Memory of a factor of our own [B], 0 when PETSc keeps it.
   virtual double factor_bytes() const { return 0.0; }
   /// For the log and the record.

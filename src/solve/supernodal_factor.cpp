@@ -70,6 +70,7 @@ SupernodalFactor& SupernodalFactor::operator=(SupernodalFactor&&) noexcept = def
 void SupernodalFactor::factorise(const std::vector<double>& values)
 {
   cholmod_common& common = handles_->common;
+  single_.clear();
   std::copy(values.begin(), values.end(), static_cast<double*>(handles_->A->x));
   const bool done = cholmod_factorize(handles_->A, handles_->L, &common) != 0;
   if (common.status == CHOLMOD_OUT_OF_MEMORY)
@@ -104,18 +105,30 @@ SupernodalFactor::Supernode SupernodalFactor::supernode(int s) const
   const int* row_start = handles_->integers(L.pi);
   const int* value_start = handles_->integers(L.px);
   const double* values = static_cast<const double*>(L.x);
-  return {super[s], super[s + 1] - super[s], row_start[s + 1] - row_start[s],
-          handles_->integers(L.s) + row_start[s], values ? values + value_start[s] : nullptr};
+  return {super[s],
+          super[s + 1] - super[s],
+          row_start[s + 1] - row_start[s],
+          handles_->integers(L.s) + row_start[s],
+          values ? values + value_start[s] : nullptr,
+          static_cast<std::size_t>(value_start[s])};
 }
 
-void SupernodalFactor::forward(core::VecX& b) const
+namespace {
+
+template <class Real>
+using Values = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+template <class Real>
+using Column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+template <class Real>
+void sweep_forward(const SupernodalFactor& factor, const Real* values, Column<Real>& b)
 {
-  core::VecX update;
-  for (int s = 0; s < supernodes(); ++s) {
-    const Supernode node = supernode(s);
-    const auto L = node.block();
+  Column<Real> update;
+  for (int s = 0; s < factor.supernodes(); ++s) {
+    const SupernodalFactor::Supernode node = factor.supernode(s);
+    const Eigen::Map<const Values<Real>> L(values + node.at, node.rows, node.columns);
     auto own = b.segment(node.first, node.columns);
-    L.topRows(node.columns).triangularView<Eigen::Lower>().solveInPlace(own);
+    L.topRows(node.columns).template triangularView<Eigen::Lower>().solveInPlace(own);
     if (node.below() == 0) continue;
     update.noalias() = L.bottomRows(node.below()) * own;
     const int* row = node.row + node.columns;
@@ -123,12 +136,13 @@ void SupernodalFactor::forward(core::VecX& b) const
   }
 }
 
-void SupernodalFactor::backward(core::VecX& y) const
+template <class Real>
+void sweep_backward(const SupernodalFactor& factor, const Real* values, Column<Real>& y)
 {
-  core::VecX above;
-  for (int s = supernodes() - 1; s >= 0; --s) {
-    const Supernode node = supernode(s);
-    const auto L = node.block();
+  Column<Real> above;
+  for (int s = factor.supernodes() - 1; s >= 0; --s) {
+    const SupernodalFactor::Supernode node = factor.supernode(s);
+    const Eigen::Map<const Values<Real>> L(values + node.at, node.rows, node.columns);
     auto own = y.segment(node.first, node.columns);
     if (node.below() > 0) {
       above.resize(node.below());
@@ -136,8 +150,43 @@ void SupernodalFactor::backward(core::VecX& y) const
       for (int i = 0; i < node.below(); ++i) above[i] = y[row[i]];
       own.noalias() -= L.bottomRows(node.below()).transpose() * above;
     }
-    L.topRows(node.columns).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    L.topRows(node.columns).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
   }
+}
+
+}  // namespace
+
+void SupernodalFactor::forward(core::VecX& b) const
+{
+  sweep_forward(*this, static_cast<const double*>(handles_->L->x), b);
+}
+
+void SupernodalFactor::backward(core::VecX& y) const
+{
+  sweep_backward(*this, static_cast<const double*>(handles_->L->x), y);
+}
+
+void SupernodalFactor::copy_single()
+{
+  if (!single_.empty()) return;
+  const auto* values = static_cast<const double*>(handles_->L->x);
+  single_.assign(values, values + handles_->L->xsize);
+}
+
+void SupernodalFactor::forward_single(core::VecX& b)
+{
+  copy_single();
+  Column<float> single = b.cast<float>();
+  sweep_forward(*this, single_.data(), single);
+  b = single.cast<double>();
+}
+
+void SupernodalFactor::backward_single(core::VecX& y)
+{
+  copy_single();
+  Column<float> single = y.cast<float>();
+  sweep_backward(*this, single_.data(), single);
+  y = single.cast<double>();
 }
 
 }  // namespace trocar::solve

@@ -44,6 +44,7 @@ class SupernodalFactor
     int rows;     ///< all of them
     const int* row;
     const double* L;  ///< (rows x columns), column-major
+    std::size_t at;   ///< where it begins in all values of L
 
     int below() const { return rows - columns; }
     Eigen::Map<const core::MatX> block() const { return {L, rows, columns}; }
@@ -56,13 +57,20 @@ class SupernodalFactor
 
   void forward(core::VecX& b) const;   ///< b <- L⁻¹ b, by position
   void backward(core::VecX& y) const;  ///< y <- L⁻ᵀ y, by position
+  /// The same to single precision from a copy of L that takes half as long to read; the copy is
+  /// made on first use.
+  void forward_single(core::VecX& b);
+  void backward_single(core::VecX& y);
 
  private:
+  void copy_single();
+
   struct Handles;
   std::unique_ptr<Handles> handles_;
   std::vector<int> position_;  ///< by dof
   std::vector<int> at_;        ///< supernode by position
   std::vector<int> parent_;
+  std::vector<float> single_;  ///< values of L; empty until asked for
 };
 
 }  // namespace trocar::solve

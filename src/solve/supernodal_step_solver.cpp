@@ -3,6 +3,16 @@
 #include "core/stopwatch.hpp"
 
 namespace trocar::solve {
+namespace {
+
+// A core of today, to weigh a factorisation against sweeps without a clock: what is decided must
+// not depend on what else the machine does.
+constexpr double product_rate = 5e10;  ///< [flop/s]
+constexpr double read_rate = 2e10;     ///< [B/s]
+constexpr double least_worth = 20.0;   ///< in sweeps: small factors run far below the rates
+
+}  // namespace
+
 SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
     : space_(&parts.space), fixed_(&parts.fixed), ledger_(&parts.ledger), reuse_(parts.reuse)
 {
@@ -11,8 +21,11 @@ SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
   base::on_root(space_->comm(), [&] {
     analyse(blocks, parts.pinned);
     bytes_ = factor_->bytes();
+    sweeps_per_factor_ = std::max(
+        least_worth, factor_->flops() / product_rate / (2.0 * factor_->bytes() / read_rate));
   });
   bytes_ = space_->comm().max(bytes_);
+  sweeps_per_factor_ = space_->comm().max(sweeps_per_factor_);
 }
 
 void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
@@ -32,7 +45,16 @@ void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
     factor_->factorise(entries);
   });
   forget_columns();
+  R_.clear();
   ++ledger_->factorisations;
+}
+
+bool SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
+{
+  R_ = R;
+  // Columns of single nodes turn with them; those of wide vectors do not.
+  if (!slot_of_wide_.empty()) forget_columns();
+  return true;
 }
 
 void SupernodalStepSolver::forget_columns()
@@ -50,7 +72,11 @@ core::VecX SupernodalStepSolver::gather_free(const OwnedField& field) const
 {
   const base::Comm& comm = space_->comm();
   core::VecX all(comm.root() ? 3 * space_->global() : 0);
-  TROCAR_MPI(MPI_Gatherv(field.value.data(), static_cast<int>(field.value.size()), MPI_DOUBLE,
+  OwnedField back = field;
+  if (!R_.empty())
+    for (int local = 0; local < space_->owned(); ++local)
+      back.node(local) = turned(space_->file_node(local)).transpose() * field.node(local);
+  TROCAR_MPI(MPI_Gatherv(back.value.data(), static_cast<int>(back.value.size()), MPI_DOUBLE,
                          all.data(), dof_count_.data(), dof_start_.data(), MPI_DOUBLE, 0,
                          comm.get()));
   if (!comm.root()) return {};
@@ -73,6 +99,9 @@ OwnedField SupernodalStepSolver::scatter_free(const core::VecX& y) const
   TROCAR_MPI(MPI_Scatterv(all.data(), dof_count_.data(), dof_start_.data(), MPI_DOUBLE,
                           field.value.data(), static_cast<int>(field.value.size()), MPI_DOUBLE, 0,
                           comm.get()));
+  if (!R_.empty())
+    for (int local = 0; local < space_->owned(); ++local)
+      field.node(local) = (turned(space_->file_node(local)) * field.node(local)).eval();
   return field;
 }
 
@@ -80,7 +109,7 @@ HalfSolution SupernodalStepSolver::begin(const OwnedField& b)
 {
   if (!reuse_) forget_columns();
   HalfSolution half{gather_free(b)};
-  if (space_->comm().root()) factor_->forward(half.value);
+  if (factor_) R_.empty() ? factor_->forward(half.value) : factor_->forward_single(half.value);
   ++ledger_->half_sweeps;
   return half;
 }
@@ -113,6 +142,27 @@ std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, Compliance
   return slots;
 }
 
+/// The three rows of every probed node turned with it.
+void SupernodalStepSolver::turn_rows(const Probes& probes, core::MatX& rows) const
+{
+  if (R_.empty()) return;
+  for (std::size_t k = 0; k < probes.nodes.size(); ++k) {
+    auto three = rows.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+    three = (turned(probes.nodes[k]) * three).eval();
+  }
+}
+
+core::VecX SupernodalStepSolver::turned_back(const Probes& probes, const core::VecX& f) const
+{
+  core::VecX back = f;
+  if (R_.empty()) return back;
+  for (std::size_t k = 0; k < probes.nodes.size(); ++k) {
+    const auto at = 3 * static_cast<Eigen::Index>(k);
+    back.segment<3>(at) = turned(probes.nodes[k]).transpose() * f.segment<3>(at);
+  }
+  return back;
+}
+
 core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& report)
 {
   const core::Stopwatch watch;
@@ -120,7 +170,12 @@ core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& r
   report.probes = probes.size();
   const std::vector<int> slots = slots_of(probes, report);
   core::MatX C(probes.size(), probes.size());
-  if (columns_) C = columns_->block(slots);
+  if (columns_) {
+    C = columns_->block(slots);
+    turn_rows(probes, C);
+    C.transposeInPlace();
+    turn_rows(probes, C);
+  }
   TROCAR_MPI(MPI_Bcast(C.data(), static_cast<int>(C.size()), MPI_DOUBLE, 0, space_->comm().get()));
   ledger_->columns_built += report.built;
   ledger_->columns_reused += report.reused;
@@ -134,7 +189,11 @@ core::VecX SupernodalStepSolver::at(const Probes& probes, const HalfSolution& ha
   const std::vector<int> slots = slots_of(probes, report);
   ledger_->columns_built += report.built;
   core::VecX read(probes.size());
-  if (columns_) read = columns_->at(half.value)(slots);
+  if (columns_) {
+    core::MatX all = columns_->at(half.value)(slots);
+    turn_rows(probes, all);
+    read = all;
+  }
   TROCAR_MPI(
       MPI_Bcast(read.data(), static_cast<int>(read.size()), MPI_DOUBLE, 0, space_->comm().get()));
   return read;
@@ -150,11 +209,11 @@ OwnedField SupernodalStepSolver::finish(const HalfSolution& half, const Probes& 
     ledger_->columns_built += report.built;
     if (columns_) {
       core::VecX by_slot = core::VecX::Zero(slots_);
-      by_slot(slots) = f;
+      by_slot(slots) = turned_back(probes, f);
       columns_->push(by_slot, y);
     }
   }
-  if (factor_) factor_->backward(y);
+  if (factor_) R_.empty() ? factor_->backward(y) : factor_->backward_single(y);
   ++ledger_->half_sweeps;
   return scatter_free(y);
 }

@@ -22,6 +22,8 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   core::VecX at(const Probes& probes, const HalfSolution& half) override;
   OwnedField finish(const HalfSolution& half, const Probes& probes, const core::VecX& f) override;
   IsolatedCompliance& compliance() override { return *this; }
+  bool turn(const std::vector<core::Mat3>& R) override;
+  double sweeps_per_factor() const override { return sweeps_per_factor_; }
   double factor_bytes() const override { return bytes_; }
   std::string describe() const override;
 
@@ -42,12 +44,16 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   std::vector<int> slots_of(const Probes& probes, ComplianceReport& report);
   core::VecX gather_free(const OwnedField& field) const;
   OwnedField scatter_free(const core::VecX& y) const;
+  void turn_rows(const Probes& probes, core::MatX& rows) const;
+  core::VecX turned_back(const Probes& probes, const core::VecX& f) const;
+  const core::Mat3& turned(int file_node) const { return R_[static_cast<std::size_t>(file_node)]; }
 
   const fem::Space* space_;
   const fem::Dirichlet* fixed_;
   core::Ledger* ledger_;
   bool reuse_;
   double bytes_ = 0.0;
+  double sweeps_per_factor_ = 0.0;
   int pinned_ = 0;                              ///< nodes put last
   std::vector<int> value_count_, value_start_;  ///< doubles of every rank's blocks
   std::vector<int> dof_count_, dof_start_;      ///< dofs of every rank
@@ -59,6 +65,7 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   std::map<int, int> first_slot_of_node_;   ///< file node -> slot of its x dof
   std::map<long long, int> slot_of_wide_;
   int slots_ = 0;
+  std::vector<core::Mat3> R_;  ///< see `turn`
 };
 
 }  // namespace trocar::solve

@@ -52,25 +52,45 @@ inline Mat3 stress(const Material& m, const Mat3& R, const Mat3& F, const Mat3& 
   return R * (2.0 * m.mu() * e + m.lambda() * e.trace() * Mat3::Identity());
 }
 
+/// g ⊗ 1 and 1 ⊗ g on the entries of a column-major 3x3 block: g by row, and g by column.
+struct Spread
+{
+  using Head = Eigen::Array<double, 8, 1>;
+  explicit Spread(const core::Vec3& g)
+      : row(g[0], g[1], g[2], g[0], g[1], g[2], g[0], g[1]),
+        column(g[0], g[0], g[0], g[1], g[1], g[1], g[2], g[2])
+  {
+  }
+  Head row, column;
+};
+
 /// The ten blocks of  scale_k R K₀ Rᵀ + scale_m M  [N/m] of one tet.
 /// K_ab = V (λ g_a g_bᵀ + μ g_b g_aᵀ + μ g_a·g_b I), g the shape gradients turned by R;
-/// M_ab = ρV (1 + δ_ab)/20 consistent or ρV δ_ab/4 lumped.
+/// M_ab = ρV (1 + δ_ab)/20 consistent or ρV δ_ab/4 lumped. Bit p of `transposed`: K_ba instead.
 inline fem::ElementBlocks operator_blocks(const Material& m, const fem::TetShape& shape,
                                           const Mat3& R, double scale_k, double scale_m,
-                                          bool lumped)
+                                          bool lumped, std::uint16_t transposed)
 {
   const Eigen::Matrix<double, 3, 4> g = R * shape.gradient;
+  const Eigen::Matrix4d products = shape.gradient.transpose() * shape.gradient;
+  const std::array<Spread, 4> spread{Spread(g.col(0)), Spread(g.col(1)), Spread(g.col(2)),
+                                     Spread(g.col(3))};
   const double lambda = scale_k * shape.volume * m.lambda();
   const double mu = scale_k * shape.volume * m.mu();
   const double mass = scale_m * shape.volume * m.density;
+  const double off = lumped ? 0.0 : mass / 20.0;
+  const double own = lumped ? mass / 4.0 : mass / 10.0;
+  const Spread::Head diagonal(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0);
   fem::ElementBlocks blocks;
   for (std::size_t p = 0; p < 10; ++p) {
-    const int a = fem::block_pairs[p][0];
-    const int b = fem::block_pairs[p][1];
-    const double off = lumped ? 0.0 : mass / 20.0;
-    const double own = lumped ? mass / 4.0 : mass / 10.0;
-    blocks[p] = lambda * g.col(a) * g.col(b).transpose() + mu * g.col(b) * g.col(a).transpose();
-    blocks[p].diagonal().array() += mu * g.col(a).dot(g.col(b)) + (a == b ? own : off);
+    const bool other = transposed >> p & 1U;
+    const int a = fem::block_pairs[p][other ? 1 : 0];
+    const int b = fem::block_pairs[p][other ? 0 : 1];
+    const Spread& A = spread[static_cast<std::size_t>(a)];
+    const Spread& B = spread[static_cast<std::size_t>(b)];
+    const double equal = mu * products(a, b) + (a == b ? own : off);
+    blocks[p].head = lambda * A.row * B.column + mu * B.row * A.column + equal * diagonal;
+    blocks[p].last = (lambda + mu) * g(2, a) * g(2, b) + equal;
   }
   return blocks;
 }

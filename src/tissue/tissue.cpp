@@ -33,18 +33,49 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
         traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
 }
 
+/// F of `count` elements, one per lane; the last one fills the rest.
+void Tissue::deformation_gradients(const fem::GhostedField& u, std::size_t first, std::size_t count,
+                                   core::PolarBatch::Matrix& F) const
+{
+  constexpr int width = core::PolarBatch::width;
+  std::array<core::PolarBatch::Lanes, 12> nodal, gradient;
+  for (int lane = 0; lane < width; ++lane) {
+    const std::size_t e = first + std::min(static_cast<std::size_t>(lane), count - 1);
+    const double* g = elements_[e].shape.gradient.data();
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double* w = u.value.data() + 3 * space_->tets()[e].nodes[a];
+      for (std::size_t i = 0; i < 3; ++i) {
+        nodal[3 * a + i][lane] = w[i];
+        gradient[3 * a + i][lane] = g[3 * a + i];
+      }
+    }
+  }
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) {
+      core::PolarBatch::Lanes sum = core::PolarBatch::Lanes::Constant(i == j ? 1.0 : 0.0);
+      for (std::size_t a = 0; a < 4; ++a) sum += nodal[3 * a + i] * gradient[3 * a + j];
+      F[3 * j + i] = sum;
+    }
+}
+
 bool Tissue::rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const
 {
-  R.assign(elements_.size(), Mat3::Identity());
-  if (settings_.model == Model::linear) return true;
+  if (settings_.model == Model::linear) {
+    if (R.size() != elements_.size()) R.assign(elements_.size(), Mat3::Identity());
+    return true;
+  }
+  R.resize(elements_.size());
   bool upright = true;
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Mat3 F =
-        Mat3::Identity() + nodal_gradient(elements_[e].shape, nodal_values(u, space_->tets()[e]));
-    if (F.determinant() > 0.0)
-      R[e] = core::polar_rotation(F);
-    else
-      upright = false;
+  constexpr std::size_t width = core::PolarBatch::width;
+  core::PolarBatch batch;
+  for (std::size_t first = 0; first < elements_.size(); first += width) {
+    const std::size_t count = std::min(width, elements_.size() - first);
+    deformation_gradients(u, first, count, batch.matrix());
+    upright = upright && (batch.determinant() > 0.0).all();
+    if (!upright) break;
+    batch.rotate();
+    for (std::size_t lane = 0; lane < count; ++lane)
+      R[first + lane] = batch.get(static_cast<int>(lane));
   }
   return space_->comm().all(upright);
 }
@@ -57,7 +88,7 @@ void Tissue::assemble(const std::vector<Mat3>& R, double inverse_h)
     const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
     const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h;
     values_.add(e, operator_blocks(m, elements_[e].shape, R[e], scale_k, scale_m,
-                                   settings_.mass == Mass::lumped));
+                                   settings_.mass == Mass::lumped, pattern_.slots(e).transposed));
   }
   values_.fix(*space_, fixed_);
   ++ledger_->assemblies;
@@ -75,18 +106,27 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
     const bool same = current_->inverse_h == inverse_h && (linear || current_->R == R);
     if (space_->comm().all(same)) return;
   } else {
+    // A step length that comes back finds its factor; many of them must not fill the memory.
+    constexpr std::size_t most_kept = 2;
+    if (operators_.size() >= most_kept) operators_.erase(operators_.begin());
     Operator fresh;
     fresh.solver = solve::make_step_solver(
         settings_.provider,
-        {*space_, pattern_, fixed_, mesh_->x, settings_.pinned, settings_.reuse_columns,
-         settings_.most_memory, settings_.linear, *ledger_});
+        {*space_, pattern_, fixed_, mesh_->x, settings_.pinned,
+         settings_.reuse != solve::Reuse::none, settings_.most_memory, settings_.linear, *ledger_});
     operators_.push_back(std::move(fresh));
     current_ = &operators_.back();
   }
+  const bool same_h = current_->inverse_h == inverse_h;
   current_->inverse_h = inverse_h;
   if (!linear) current_->R = R;
   assemble(R, inverse_h);
-  current_->solver->set_operator(values_);
+  const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && !current_->R_factor.empty();
+  if (may_lag && space_->comm().all(same_h) && !factor_worn())
+    current_->older = current_->solver->turn(turned_nodes(R, current_->R_factor));
+  else
+    current_->older = false;
+  if (!current_->older) factor(R);
 }
 
 OwnedField Tissue::external(const TimeStep& step) const
@@ -150,10 +190,10 @@ OwnedField Tissue::apply_operator(const OwnedField& d, const std::vector<Mat3>& 
 FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
                                const TimeStep& step)
 {
-  std::vector<Mat3> R;
-  if (!rotations(space_->with_ghosts(iterate), R))
+  if (!rotations(space_->with_ghosts(iterate), R_))
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
-  use_operator(R, step);
+  use_operator(R_, step);
+  const std::vector<Mat3>& R = R_;
   OwnedField r = forces(old, iterate, R, step, nullptr);
 
   OwnedField prescribed = space_->zero();
@@ -167,7 +207,12 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   }
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
   if (moves) r.value -= apply_operator(prescribed, R, step.inverse()).value;
-  return {{iterate.value + prescribed.value}, begin(r), std::nullopt};
+  FreeMotion motion{{iterate.value + prescribed.value}, {}};
+  if (current_->older)
+    begin_approach(old, iterate, step, r, motion);
+  else
+    motion.half = begin(r);
+  return motion;
 }
 
 core::VecX Tissue::at(const solve::Probes& probes, const FreeMotion& motion, const OwnedField& u)

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/polar.hpp"
 #include "core/time_step.hpp"
 #include "mesh/mesh.hpp"
 #include "solve/step_solver.hpp"
+#include "tissue/approach.hpp"
 #include "tissue/boundary.hpp"
 #include "tissue/elastic.hpp"
 
@@ -27,9 +29,12 @@ struct TissueSettings
   BoundaryConditions boundary;
   solve::LinearSettings linear;
   solve::Provider provider = solve::Provider::automatic;
-  bool reuse_columns = true;
+  solve::Reuse reuse = solve::Reuse::exact;
+  int stale_steps = 10;      ///< that share a factor with Reuse::stale
   double most_memory = 0.0;  ///< that a factor of our own may take [B], 0: a part of what is free
   std::vector<int> pinned;   ///< file nodes that needles are planned to reach
+  /// Equilibrium that a step with an older factor must reach, of its load; 0: always factor anew.
+  double lag_tolerance = 0.0;
 };
 
 /// Displacement and velocity of every owned node. A value.
@@ -42,9 +47,11 @@ struct TissueState
 /// Answer of the tissue alone to one linearisation: u_free = base + A⁻¹ r, half solved.
 struct FreeMotion
 {
-  OwnedField base;                     ///< the iterate, with prescribed displacements [m]
-  solve::HalfSolution half;            ///< of A⁻¹ r
-  std::optional<std::string> trouble;  ///< why the step cannot be taken; equal on all ranks
+  OwnedField base;                       ///< the iterate, with prescribed displacements [m]
+  solve::HalfSolution half;              ///< of A⁻¹ r
+  std::optional<std::string> trouble{};  ///< why the step cannot be taken; equal on all ranks
+  core::VecX pushed{};                   ///< multipliers that r holds already (rows, or none) [N]
+  std::optional<Approach> approach{};    ///< with a factor of an older operator
 };
 
 /// Energies at the end of a step and what went in and was lost in it [J].
@@ -60,6 +67,9 @@ struct Work
 class Tissue
 {
  public:
+  /// Passes of an approach, beside those that cost as much as a factor, before one is made.
+  static constexpr int most_passes = 8;
+
   /// Borrows mesh, space and ledger. Collective.
   Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
          core::Ledger& ledger);
@@ -82,6 +92,21 @@ class Tissue
   /// Collective.
   OwnedField finish(const FreeMotion& motion, const solve::Probes& probes, const core::VecX& f);
 
+  /// Starts an approach from multipliers and what they push with, Hᵀλ [N]: with a factor in single
+  /// precision only what is not yet balanced may go through it. Collective.
+  void start_from(FreeMotion& motion, const core::VecX& lambda, const OwnedField& forces);
+  /// The way from u to u + A⁻¹ f for nodal forces f [N], with the operator of the last
+  /// `free_motion`. Collective.
+  FreeMotion pushed(const OwnedField& u, const OwnedField& forces);
+  /// True when u is the answer to this linearisation; else `motion` becomes the next pass of the
+  /// approach to it. `tolerance`: of ‖r + Hᵀλ - AΔu‖ against ‖r‖ + ‖Hᵀλ‖. Collective.
+  bool there(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance);
+  double lag_tolerance() const { return settings_.lag_tolerance; }
+  /// Counts the factors made: compliance columns of one version belong together.
+  int factor_version() const { return factor_version_; }
+  /// Linearisations that the factor has served.
+  int factor_age() const { return current_->uses; }
+
   /// A⁻¹ f for nodal forces f [N] with the operator of the last `free_motion`, half solved.
   /// Collective.
   solve::HalfSolution begin(const OwnedField& forces);
@@ -100,6 +125,12 @@ class Tissue
   /// The compliance that belongs to the operator of the last `free_motion`.
   solve::IsolatedCompliance& compliance() { return current_->solver->compliance(); }
 
+  /// Rotations R_e of the elements at u, identities for linear tissue. False when one is turned
+  /// inside out, on every rank. Collective.
+  bool rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const;
+  /// Fills the values of the operator. Not collective.
+  void assemble(const std::vector<Mat3>& R, double inverse_h);
+
   const fem::Dirichlet& fixed() const { return fixed_; }
   const mesh::Mesh& mesh() const { return *mesh_; }
   const fem::Space& space() const { return *space_; }
@@ -117,13 +148,27 @@ class Tissue
   struct Operator
   {
     double inverse_h = -1.0;
-    std::vector<Mat3> R;  ///< rotations it was assembled with; empty for linear tissue
+    std::vector<Mat3> R;         ///< rotations it was assembled with; empty for linear tissue
+    std::vector<Mat3> R_factor;  ///< and those of its factor
+    bool older = false;          ///< the factor is that of an older operator
+    int uses = 0;                ///< linearisations that the factor has served
+    double sweeps = 0.0, last_sweeps = 0.0;  ///< they took in all, and the last one
     std::unique_ptr<solve::StepSolver> solver;
   };
 
-  bool rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const;
   void use_operator(const std::vector<Mat3>& R, const TimeStep& step);
-  void assemble(const std::vector<Mat3>& R, double inverse_h);
+  void deformation_gradients(const fem::GhostedField& u, std::size_t first, std::size_t count,
+                             core::PolarBatch::Matrix& F) const;
+  void factor(const std::vector<Mat3>& R);
+  bool factor_worn() const;
+  std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
+                                 const std::vector<Mat3>& R_factor) const;
+  void begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
+                      const OwnedField& r, FreeMotion& motion);
+  void change_rows(Approach& approach, const OwnedField& d, const OwnedField& A_d,
+                   const core::VecX& more, const Push& push) const;
+  void advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
+               const Push& push) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
                     const TimeStep& step, double* scale) const;
   OwnedField external(const TimeStep& step) const;
@@ -139,11 +184,13 @@ class Tissue
   fem::BlockMatrix values_;
   double smallest_scale_ = 0.0;    ///< 1e-5 E V^(2/3) [N]
   std::vector<Element> elements_;  ///< by local tet
+  std::vector<Mat3> R_;            ///< rotations of the present linearisation
   OwnedField weight_;              ///< ρ g V/4 per node [N]
   std::vector<OwnedField> traction_;
   /// One per distinct h for linear tissue. Else one, filled again when h or any rotation changes.
   std::vector<Operator> operators_;
   Operator* current_ = nullptr;
+  int factor_version_ = 0;
 };
 
 }  // namespace trocar::tissue

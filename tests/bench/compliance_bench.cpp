@@ -137,6 +137,36 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
                "s");
 }
 
+/// Filling the operator's values, with and without rotations, and the least that must be moved for
+/// it: values zeroed, read and written, and every tet's gradients, volume and slots read.
+void time_assembly(const Bench& bench, const test::BlockShape& shape)
+{
+  for (const auto model : {tissue::Model::linear, tissue::Model::corotational}) {
+    tissue::TissueSettings settings = gel(solve::Provider::supernodal);
+    settings.model = model;
+    test::Body body(shape, settings);
+    const bool turns = model == tissue::Model::corotational;
+    fem::OwnedField u = body.space.zero();
+    for (int k = 0; k < body.space.owned(); ++k) {
+      const Vec3& x = body.mesh.x[static_cast<std::size_t>(body.space.file_node(k))];
+      u.node(k) = 0.2 * Vec3(x.z(), 0, -x.x() * x.z() / 0.04);
+    }
+    const fem::GhostedField u_g = body.space.with_ghosts(u);
+    std::vector<core::Mat3> R;
+    const double seconds = bench.median([&] {
+      if (turns || R.empty()) body.tissue.rotations(u_g, R);
+      body.tissue.assemble(R, 100.0);
+    });
+    bench.figure(turns ? "assembly_corotational" : "assembly_linear", seconds, "s");
+    if (turns) continue;
+    const fem::BlockPattern pattern(body.space);
+    const double tets = static_cast<double>(body.space.tets().size());
+    bench.figure("assembly_bytes",
+                 3.0 * 72.0 * static_cast<double>(pattern.block_count()) + tets * (104.0 + 44.0),
+                 "B");
+  }
+}
+
 /// All columns of nodes that the factor has put last, and what that costs the factor.
 void time_pinned(const Bench& bench, const test::BlockShape& shape)
 {
@@ -187,6 +217,7 @@ int run(int argc, char** argv)
   memory_rates(bench);
   time_supernodal(bench, shape);
   time_pinned(bench, shape);
+  time_assembly(bench, shape);
   time_baseline(bench, shape, argc > 3 ? static_cast<std::size_t>(std::atoi(argv[3])) : 60);
   return 0;
 }

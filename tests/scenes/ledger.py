@@ -60,7 +60,23 @@ check(work["assemblies"] == 1 and work["factorisations"] == 1,
 gel = options("gel_insertion.opts")
 gel.update({"-time_end": "0.4"})
 work = ledger(completed(gel))
-check(work["assemblies"] == work["factorisations"], "corotational: one factorisation per assembly")
+check(work["factorisations"] < work["assemblies"] / 4,
+      f"corotational: {work['factorisations']} factorisations for {work['assemblies']} assemblies")
+check(work["columns_reused"] > 2 * work["columns_built"], "and columns are kept with the factor")
+work = ledger(completed({**gel, "-compliance_lag": "0"}))
+check(work["assemblies"] == work["factorisations"], "lag 0: one factorisation per assembly")
+for steps in (1, 5):
+    folder = completed({**gel, "-compliance_reuse": "stale", "-compliance_stale_steps": str(steps),
+                        "-compliance_stale_error": "", "-needle_velocity": "0.1"})
+    work, h = ledger(folder), histories(folder)
+    gap, error = h["compliance/leftover_gap"].max(), h["compliance/stale_error"].max()
+    if steps == 1:
+        check(work["assemblies"] == work["factorisations"] and gap == 0.0 and error == 0.0,
+              "stale for one step is exact")
+    else:
+        check(3 * work["factorisations"] < work["assemblies"], "stale: 5 steps share a factor")
+        check(1e-9 < gap < 1e-3 and 1e-9 < error < 1e-3,
+              f"stale: gap off by {gap:.1e} m, displacement by {error:.1e} m")
 keys = {"assemblies", "factorisations", "solves", "half_sweeps", "columns_built", "columns_reused",
         "constraint_solves", "contact_queries", "stress_evaluations", "steps", "rejected_steps"}
 check(set(work) == keys, "the ledger holds every count of the contract")

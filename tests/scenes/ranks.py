@@ -21,6 +21,9 @@ layers.update({"-time_end": "3", "-output_every": "50"})
 steering = options("steering.opts")
 steering.update({"-time_end": "2", "-output_every": "10"})
 
+# What a step of turning tissue took, not what it found.
+work = {"compliance/new_probes", "compliance/reused_probes", "compliance/passes",
+        "compliance/factor_age", "constraint/iterations"}
 for name, settings, tolerance in [
     ("no ties (gel)", gel, 1e-8), ("ties", ties, 1e-8), ("tip exactly on vertices", exact, 1e-8),
     ("path in a face plane", plane, 1e-8), ("puncture in layers", layers, 1e-8),
@@ -32,6 +35,8 @@ for name, settings, tolerance in [
         check(first.keys() == other.keys(), f"{name}: same histories on {ranks} ranks")
         worst = ("", 0.0)
         for key, values in first.items():
+            if key in work:  # a pass more or less, where round-off decides
+                continue
             if key.endswith("residual"):  # round-off by nature; bounded by the tolerance instead
                 check(other[key].max() <= 1e-9, f"{name}: residual <= 1e-9 m on {ranks} ranks")
                 continue

@@ -4,6 +4,7 @@
 #include "core/failure.hpp"
 #include "core/math.hpp"
 #include "core/options.hpp"
+#include "core/polar.hpp"
 #include "core/words.hpp"
 
 namespace trocar::core {
@@ -25,6 +26,24 @@ TEST(Rotation, PolarRecoversTheRotationOfAnyStretch)
   EXPECT_LT((polar_rotation(R * U) - R).norm(), 1e-13);
   // A nearly flat element still has a rotation.
   EXPECT_LT((polar_rotation(R * Vec3(1, 1, 1e-6).asDiagonal()) - R).norm(), 1e-8);
+}
+
+TEST(Rotation, PolarBatchEqualsOneByOne)
+{
+  PolarBatch batch;
+  std::array<Mat3, PolarBatch::width> F;
+  for (int lane = 0; lane < PolarBatch::width; ++lane) {
+    // From hardly strained to nearly flat: lanes need different numbers of iterations.
+    const Mat3 U = Vec3(1.0 + 0.3 * lane, 1.0, std::pow(10.0, -0.7 * lane)).asDiagonal();
+    F[static_cast<std::size_t>(lane)] = rotation_exp(Vec3(0.4 * lane, -1.1, 0.2)) * U;
+    batch.set(lane, F[static_cast<std::size_t>(lane)]);
+  }
+  batch.rotate();
+  for (int lane = 0; lane < PolarBatch::width; ++lane) {
+    const Mat3 R = batch.get(lane);
+    EXPECT_LT((R - polar_rotation(F[static_cast<std::size_t>(lane)])).norm(), 1e-9);
+    EXPECT_LT((R.transpose() * R - Mat3::Identity()).norm(), 1e-13);
+  }
 }
 
 TEST(Rotation, FrameAlongIsOrthonormalForEveryDirection)

@@ -176,7 +176,7 @@ TEST(Reuse, CanBeTurnedOff)
 {
   for (solve::Provider provider : {solve::Provider::supernodal, solve::Provider::ksp_block}) {
     tissue::TissueSettings settings = held(provider);
-    settings.reuse_columns = false;
+    settings.reuse = solve::Reuse::none;
     test::Body body({3, 3, 3, core::Vec3(0.1, 0.1, 0.1)}, settings);
     const tissue::TissueState rest = body.tissue.at_rest();
     solve::ComplianceReport report;

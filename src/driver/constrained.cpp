@@ -1,0 +1,183 @@
+#include <algorithm>
+
+#include "driver/simulation.hpp"
+#include "law/solve.hpp"
+
+// 3 to 5 of the step: rows, the dense problem, the correction.
+namespace trocar::driver {
+namespace {
+
+std::vector<constraint::SmallBody> small_bodies(const std::vector<needle::Linearised>& needles)
+{
+  std::vector<constraint::SmallBody> bodies;
+  for (const needle::Linearised& needle : needles)
+    bodies.push_back({needle.held, needle.factor, needle.free_increment});
+  return bodies;
+}
+
+}  // namespace
+
+Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
+                                              const tissue::FreeMotion& tissue, State& next,
+                                              core::VecX& last, StepReport& report)
+{
+  Pass pass;
+  std::vector<needle::Linearised> needles;
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
+  pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
+  pass.probes.nodes = pass.rows.set.probed_nodes();
+  const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
+  if (last.size() != pass.rows.set.size()) last = pass.rows.set.starts();
+  const bool stale =
+      scenario_.tissue.reuse == solve::Reuse::stale && tissue.approach && !pass.rows.set.empty();
+  if (!stale || scenario_.output.stale_error)
+    meet_laws(now, tissue, start, needles, last, pass, next.tissue.u, report);
+  if (stale && !pass.trouble)
+    meet_stale_laws(now, tissue, start, needles, last, pass, next.tissue.u, report);
+  if (pass.trouble) return pass;
+  last = pass.lambda.lambda;
+  correct(old, now, needles, pass, next, report);
+  return pass;
+}
+
+void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
+                           const fem::OwnedField& start,
+                           const std::vector<needle::Linearised>& needles, const core::VecX& last,
+                           Pass& pass, fem::OwnedField& u, StepReport& report)
+{
+  tissue::FreeMotion motion = tissue;
+  if (motion.approach) tissue_.start_from(motion, last, push_of(pass, needles).forces(last));
+  do {                             // once, or until there when the factor is an older one
+    if (!pass.rows.set.empty()) {  // 4 W and g from the isolated compliance, then the laws
+      get_compliance(pass, report);
+      core::VecX free = tissue_.at(pass.probes, motion, start);
+      if (motion.pushed.size() > 0)
+        free -= pass.C * constraint::probe_forces(pass.rows.set, motion.pushed);
+      pass.trouble = solve_constraints(free, needles, last, pass, report);
+    }
+    if (pass.trouble) return;
+    u = tissue_.finish(motion, pass.probes, more_forces(motion, pass));  // 5
+    ++report.passes;
+  } while (!tissue_.there(motion, u, push_of(pass, needles), lag_tolerance(now)));
+}
+
+// The needle paper's reuse of columns from step to step: the laws are met once, with the compliance
+// of an older operator; the tissue obeys the present one. What the gaps are off is reported.
+void Simulation::meet_stale_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
+                                 const fem::OwnedField& start,
+                                 const std::vector<needle::Linearised>& needles,
+                                 const core::VecX& last, Pass& pass, fem::OwnedField& u,
+                                 StepReport& report)
+{
+  const fem::OwnedField exact = u;
+  const auto alone = [&](tissue::FreeMotion motion) {
+    do {
+      u = tissue_.finish(motion, {}, {});
+      ++report.passes;
+    } while (!tissue_.there(motion, u, {}, lag_tolerance(now)));
+  };
+  tissue::FreeMotion motion = tissue;
+  tissue_.start_from(motion, {}, space_.zero());
+  alone(motion);
+  get_compliance(pass, report);
+  pass.lambda = {};
+  const core::VecX free = solve::read(pass.probes, {u.value - start.value}, space_);
+  pass.trouble = solve_constraints(free, needles, last, pass, report);
+  if (pass.trouble) return;
+  alone(tissue_.pushed(u, push_of(pass, needles).forces(pass.lambda.lambda)));
+  const core::VecX moved = solve::read(pass.probes, {u.value - start.value}, space_);
+  const core::VecX thought = free + pass.C * pass.forces;
+  const core::VecX off = constraint::row_displacements(pass.rows.set, moved - thought);
+  report.leftover_gap = std::max(report.leftover_gap, off.cwiseAbs().maxCoeff());
+  if (scenario_.output.stale_error) {
+    const fem::OwnedField difference{u.value - exact.value};
+    const double mine = difference.value.size() > 0 ? difference.value.cwiseAbs().maxCoeff() : 0.0;
+    report.stale_error = std::max(report.stale_error, space_.comm().max(mine));
+  }
+}
+
+void Simulation::get_compliance(Pass& pass, StepReport& report)
+{
+  if (pass.factor_version == tissue_.factor_version()) return;
+  solve::ComplianceReport compliance;
+  pass.C = tissue_.compliance().block(pass.probes, compliance);
+  pass.factor_version = tissue_.factor_version();
+  report.compliance += compliance;
+}
+
+core::VecX Simulation::more_forces(const tissue::FreeMotion& motion, const Pass& pass)
+{
+  if (motion.pushed.size() == 0) return pass.forces;
+  return pass.forces - constraint::probe_forces(pass.rows.set, motion.pushed);
+}
+
+tissue::Push Simulation::push_of(const Pass& pass,
+                                 const std::vector<needle::Linearised>& needles) const
+{
+  tissue::Push push;
+  push.lambda = pass.lambda.lambda;
+  push.same_laws = pass.same_laws;
+  push.forces = [&pass, this](const core::VecX& lambda) {
+    return solve::spread(pass.probes, constraint::probe_forces(pass.rows.set, lambda), space_);
+  };
+  push.yielding = [&pass, &needles](const core::VecX& a, const core::VecX& b) {
+    return constraint::yielding(pass.rows.set, small_bodies(needles), a, b);
+  };
+  return push;
+}
+
+/// Of a step that is iterated anyway, a linearisation need only lead on.
+double Simulation::lag_tolerance(const core::TimeStep& now) const
+{
+  constexpr double leads_on = 1e-4;
+  const bool iterated = now.is_static || scenario_.time.newton_max > 1;
+  return std::max(scenario_.tissue.lag_tolerance, iterated ? leads_on : 0.0);
+}
+
+std::optional<std::string> Simulation::solve_constraints(
+    const core::VecX& free, const std::vector<needle::Linearised>& needles, const core::VecX& start,
+    Pass& pass, StepReport& report)
+{
+  const constraint::Set& set = pass.rows.set;
+  law::Problem problem = constraint::reduce(set, pass.C, free, small_bodies(needles));
+  const law::Multipliers last = std::move(pass.lambda);
+  problem.start = last.converged ? last.lambda : start;
+  pass.lambda = law::solve(problem, scenario_.laws);
+  ++ledger_.constraint_solves;
+  if (!pass.lambda.converged) return pass.lambda.why;
+  pass.same_laws = last.converged && law::same_states(problem, last.lambda, pass.lambda.lambda);
+  if (!last.converged) law::compare(problem, scenario_.compare, report.trials);
+
+  pass.mobility = law::mobility(problem);
+  pass.forces = constraint::probe_forces(set, pass.lambda.lambda);
+  pass.levers.clear();
+  for (std::size_t i = 0; i < needles_.size(); ++i)
+    pass.levers.push_back(
+        constraint::body_forces(set, pass.lambda.lambda, static_cast<int>(i), needles_[i].dofs()));
+  report.rows = set.size();
+  report.rank = pass.lambda.rank;
+  report.condition = pass.lambda.condition;
+  report.nonunique = pass.lambda.nonunique;
+  report.iterations += pass.lambda.iterations;
+  report.residual = std::max(report.residual, pass.lambda.residual);
+  report.outer = std::max(report.outer, pass.lambda.outer);
+  report.contraction = std::max(report.contraction, pass.lambda.contraction);
+  return std::nullopt;
+}
+
+void Simulation::correct(const State& old, const core::TimeStep& now,
+                         const std::vector<needle::Linearised>& needles, const Pass& pass,
+                         State& next, StepReport& report)
+{
+  const bool pushed = pass.lambda.lambda.size() > 0;
+  next.tissue.v.value = now.inverse() * (next.tissue.u.value - old.tissue.u.value);
+  report.needles.assign(needles_.size(), {});
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();
+    report.needles[i].base = needles_[i].base_wrench(next.needles[i], needles[i], lever);
+    next.needles[i] = needles_[i].correct(old.needles[i], next.needles[i], needles[i], lever, now);
+  }
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,186 @@
+#include "tissue/approach.hpp"
+
+#include "tissue/element.hpp"
+#include "tissue/tissue.hpp"
+
+namespace trocar::tissue {
+
+/// Rotations of the nodes since the factor was made, in file order: of the volume-weighted mean of
+/// the tets around each. Nodes with a fixed axis do not turn: the supports do not turn with them.
+std::vector<Mat3> Tissue::turned_nodes(const std::vector<Mat3>& R,
+                                       const std::vector<Mat3>& R_factor) const
+{
+  std::vector<Mat3> sum(static_cast<std::size_t>(space_->local()), Mat3::Zero());
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Mat3 turn = elements_[e].shape.volume * R[e] * R_factor[e].transpose();
+    for (int node : space_->tets()[e].nodes) sum[static_cast<std::size_t>(node)] += turn;
+  }
+  std::array<OwnedField, 3> column{space_->zero(), space_->zero(), space_->zero()};
+  for (int local = 0; local < space_->owned(); ++local) {
+    const bool held = fixed_.axes_of_number(space_->first() + local) != 0;
+    const Mat3& mean = sum[static_cast<std::size_t>(local)];
+    const bool turns = !held && mean.determinant() > 0.0;
+    const Mat3 turn = turns ? core::polar_rotation(mean) : Mat3::Identity();
+    for (int a = 0; a < 3; ++a) column[static_cast<std::size_t>(a)].node(local) = turn.col(a);
+  }
+  std::vector<Mat3> turned(static_cast<std::size_t>(space_->global()));
+  for (int a = 0; a < 3; ++a) {
+    const fem::GlobalField all = space_->gather(column[static_cast<std::size_t>(a)]);
+    for (int node = 0; node < space_->global(); ++node)
+      turned[static_cast<std::size_t>(node)].col(a) = all.node(node);
+  }
+  return turned;
+}
+
+/// A factor is made anew when the last linearisation took more sweeps than one does on average when
+/// the factor's cost is shared by all that used it: from there on its share no longer falls.
+bool Tissue::factor_worn() const
+{
+  const Operator& o = *current_;
+  if (settings_.reuse == solve::Reuse::stale) return o.uses >= settings_.stale_steps;
+  return o.uses > 0 && o.last_sweeps * o.uses > o.solver->sweeps_per_factor() + o.sweeps;
+}
+
+void Tissue::factor(const std::vector<Mat3>& R)
+{
+  current_->solver->set_operator(values_);
+  ++factor_version_;
+  if (settings_.model != Model::linear) current_->R_factor = R;
+  current_->older = false;
+  current_->uses = 1;
+  current_->sweeps = current_->last_sweeps = 1.0;
+}
+
+/// Begins where the velocity leads.
+void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
+                            const OwnedField& r, FreeMotion& motion)
+{
+  Approach approach;
+  OwnedField ahead = space_->zero();
+  if (step.t > 0.0 && space_->comm().all(iterate.value == old.u.value)) {
+    ahead.value = step.h * old.v.value;
+    fixed_.clear(ahead);
+  }
+  approach.rest = {r.value - values_.times(*space_, ahead).value};
+  fixed_.clear(approach.rest);
+  OwnedField load = r;
+  fixed_.clear(load);
+  approach.load = space_->norm(load);
+  motion.base.value += ahead.value;
+  approach.u = motion.base;
+  motion.approach = std::move(approach);
+}
+
+void Tissue::start_from(FreeMotion& motion, const core::VecX& lambda, const OwnedField& forces)
+{
+  if (!motion.approach) return;
+  Approach& a = *motion.approach;
+  a.lambda = motion.pushed = lambda;
+  a.rest.value += forces.value;
+  fixed_.clear(a.rest);
+  motion.half = begin(a.rest);
+}
+
+FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
+{
+  FreeMotion motion{u, begin(forces)};
+  if (!current_->older) return motion;
+  Approach approach;
+  approach.u = u;
+  approach.rest = forces;
+  fixed_.clear(approach.rest);
+  approach.load = space_->norm(approach.rest);
+  motion.approach = std::move(approach);
+  return motion;
+}
+
+bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance)
+{
+  if (!motion.approach) return true;
+  Approach& a = *motion.approach;
+  const bool rows = push.lambda.size() > 0;
+  core::VecX more = push.lambda - a.lambda;
+  OwnedField d{u.value - a.u.value};
+  OwnedField A_d = values_.times(*space_, d);
+  OwnedField rest{a.rest.value - A_d.value};
+  double load = a.load;
+  if (rows) {
+    rest.value += push.forces(more).value;
+    load += space_->norm(push.forces(push.lambda));
+  }
+  fixed_.clear(rest);
+  ++a.passes;
+  if (space_->norm(rest) <= tolerance * load) {
+    current_->last_sweeps = a.passes;
+    current_->sweeps += a.passes;
+    ++current_->uses;
+    return true;
+  }
+  if (a.passes >= most_passes + current_->solver->sweeps_per_factor()) {
+    factor(current_->R);
+    motion.base = u;
+    motion.pushed = push.lambda;
+    motion.half = begin(rest);
+    motion.approach.reset();
+    return false;
+  }
+  if (rows && !(push.same_laws && a.on_rows))
+    change_rows(a, d, A_d, more, push);
+  else
+    advance(a, std::move(d), std::move(A_d), std::move(more), push);
+  motion.base = a.u;
+  motion.pushed = a.lambda;
+  motion.half = begin(a.rest);
+  return false;
+}
+
+/// A step on which rows begin to hold or slip. The energy is convex and d a proximal step in the
+/// metric of P: it falls along d at least up to (dᵀPd)/(dᵀAd). The first step is a whole one, to
+/// get on the bilateral rows.
+void Tissue::change_rows(Approach& a, const OwnedField& d, const OwnedField& A_d,
+                         const core::VecX& more, const Push& push) const
+{
+  const OwnedField pushed = push.forces(more);
+  double step = 1.0;
+  if (a.passes > 1 && !push.same_laws) {
+    const double others = push.yielding(more, more);
+    const double P = space_->dot(d, {a.rest.value + pushed.value}) + others;
+    const double A = space_->dot(d, A_d) + others;
+    if (P < A) step = P / A;
+  }
+  a.u.value += step * d.value;
+  a.lambda += step * more;
+  a.rest.value += step * (pushed.value - A_d.value);
+  fixed_.clear(a.rest);
+  a.on_rows = step == 1.0;
+  a.way_energy = 0.0;
+}
+
+/// One step of conjugate gradients from a preconditioned direction d; needles and soft rows are
+/// part of the energy, because they move with the multipliers.
+void Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
+                     const Push& push) const
+{
+  const bool rows = more.size() > 0;
+  if (a.way_energy > 0.0) {
+    double coupled = space_->dot(d, a.A_way);
+    if (rows) coupled += push.yielding(more, a.lambda_way);
+    const double beta = -coupled / a.way_energy;
+    d.value += beta * a.way.value;
+    A_d.value += beta * a.A_way.value;
+    more += beta * a.lambda_way;
+  }
+  a.way_energy = space_->dot(d, A_d) + (rows ? push.yielding(more, more) : 0.0);
+  const double along = space_->dot(a.rest, d);
+  const double step = a.way_energy > 0.0 ? along / a.way_energy : 1.0;
+  a.u.value += step * d.value;
+  a.lambda += step * more;
+  a.rest.value -= step * A_d.value;
+  if (rows) a.rest.value += step * push.forces(more).value;
+  fixed_.clear(a.rest);
+  a.way = std::move(d);
+  a.A_way = std::move(A_d);
+  a.lambda_way = std::move(more);
+}
+
+}  // namespace trocar::tissue
