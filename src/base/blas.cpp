@@ -55,6 +55,14 @@ void add_gram(const MatX& A, Part C)
   BLASsyrk_("L", "T", &n, &k, &one, A.data(), &lda, &one, C.data(), &ldc);
 }
 
+MatX gram(const MatX& A)
+{
+  MatX C = MatX::Zero(A.cols(), A.cols());
+  add_gram(A, C);
+  C.triangularView<Eigen::StrictlyUpper>() = C.transpose();
+  return C;
+}
+
 void subtract_product(const Block& A, const Block& B, Part C)
 {
   if (C.size() == 0) return;

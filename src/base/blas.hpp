@@ -14,6 +14,7 @@ MatX transposed_product(const MatX& A, const Block& B);         ///< Aᵀ B
 void subtract_product(const Block& A, const Block& B, Part C);  ///< C -= A B
 /// C += Aᵀ A on the lower triangle of a block of a larger array.
 void add_gram(const MatX& A, Part C);
+MatX gram(const MatX& A);                  ///< Aᵀ A, both triangles
 void solve_lower(const Block& L, Part B);  ///< B <- L⁻¹ B, L lower triangular
 
 /// Speed of this process's dense matrix product [flop/s]: the best of a few products of 384 x 384,

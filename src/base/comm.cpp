@@ -123,4 +123,15 @@ void on_root(const Comm& comm, const std::function<void()>& work)
   if (caught.code != 0) throw core::Failure(static_cast<core::ExitCode>(caught.code), caught.line);
 }
 
+void on_all(const Comm& comm, const std::function<void()>& work)
+{
+  Caught caught = run_guarded(work);
+  const int mine = caught.code != 0 ? comm.rank() : comm.size();
+  int first = 0;
+  TROCAR_MPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, comm.get()));
+  if (first == comm.size()) return;
+  broadcast_from(comm, first, caught);
+  throw core::Failure(static_cast<core::ExitCode>(caught.code), caught.line);
+}
+
 }  // namespace trocar::base

@@ -46,4 +46,8 @@ class Comm
 /// Collective.
 void on_root(const Comm& comm, const std::function<void()>& work);
 
+/// Runs `work` on every rank; a Failure on any of them is thrown on all, with the line of the
+/// lowest one. Collective; the work itself must not be.
+void on_all(const Comm& comm, const std::function<void()>& work);
+
 }  // namespace trocar::base

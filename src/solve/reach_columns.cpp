@@ -20,6 +20,7 @@ struct ReachColumns::Batch
   std::vector<MatX> Y;     ///< (columns of the supernode x active columns), by place
   MatX gram;               ///< Xᵀ X of the batch, lower triangle
   MatX cross;              ///< Xᵀ X with the slots there before (columns x slots)
+  MatX rest;               ///< what is left at the open places (open x columns)
 };
 
 ReachColumns::ReachColumns(const SupernodalFactor& factor) : factor_(&factor)
@@ -104,6 +105,11 @@ void ReachColumns::eliminate(int s, Batch& batch)
   const int* row = node.row + node.columns;
   for (int i = 0; i < node.below();) {
     const int t = factor_->supernode_at(row[i]);
+    if (t < 0) {  // open places, and no others after them
+      for (; i < node.below(); ++i)
+        batch.rest.row(row[i] - factor_->closed()).segment(low, active) -= update.row(i);
+      break;
+    }
     const SupernodalFactor::Supernode above = factor_->supernode(t);
     int end = i;
     while (end < node.below() && row[end] < above.first + above.columns) ++end;
@@ -177,7 +183,7 @@ void ReachColumns::plan(Batch& batch) const
   }
 }
 
-void ReachColumns::add_units(const std::vector<int>& positions)
+MatX ReachColumns::add_units(const std::vector<int>& positions)
 {
   Batch batch;
   std::vector<int> order;
@@ -193,19 +199,25 @@ void ReachColumns::add_units(const std::vector<int>& positions)
   const auto count = static_cast<Eigen::Index>(batch.slot.size());
   batch.gram = MatX::Zero(count, count);
   batch.cross = MatX::Zero(count, size_);
+  batch.rest = MatX::Zero(factor_->size() - factor_->closed(), count);
+  const int first_slot = size_;
   enlarge(static_cast<int>(positions.size()));
   plan(batch);
   for (int s : batch.reach) eliminate(s, batch);
   settle(batch);
+  MatX rest = MatX::Zero(batch.rest.rows(), static_cast<Eigen::Index>(positions.size()));
+  for (std::size_t k = 0; k < batch.slot.size(); ++k)
+    rest.col(batch.slot[k] - first_slot) = batch.rest.col(static_cast<Eigen::Index>(k));
+  return rest;
 }
 
-void ReachColumns::add_dense(const VecX& vector)
+VecX ReachColumns::add_dense(const VecX& vector)
 {
   const int slot = size_;
   enlarge(1);
   VecX y = vector;
   factor_->forward(y);
-  C_(slot, slot) = y.squaredNorm();
+  C_(slot, slot) = y.head(factor_->closed()).squaredNorm();
   for (int s = 0; s < factor_->supernodes(); ++s) {
     const SupernodalFactor::Supernode node = factor_->supernode(s);
     const MatX own = y.segment(node.first, node.columns);
@@ -218,6 +230,7 @@ void ReachColumns::add_dense(const VecX& vector)
     }
     append(s, own, &slot);
   }
+  return y.tail(factor_->size() - factor_->closed());
 }
 
 VecX ReachColumns::at(const VecX& y) const

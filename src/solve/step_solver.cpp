@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "solve/domain.hpp"
 #include "solve/ksp_step_solver.hpp"
 #include "solve/supernodal_step_solver.hpp"
 
@@ -37,6 +38,10 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
   const double limit = parts.most_memory > 0.0
                            ? parts.most_memory
                            : part_of_memory * parts.space.comm().max(available_memory());
+  if (solver->shared_dofs() > most_top)
+    return std::make_unique<KspStepSolver>(
+        parts, ColumnSolver::blocked,
+        ", because the ranks would share " + std::to_string(solver->shared_dofs()) + " dofs");
   if (limit <= 0.0 || solver->factor_bytes() <= limit) return solver;
   return std::make_unique<KspStepSolver>(
       parts, ColumnSolver::blocked,

@@ -20,7 +20,8 @@ enum class Provider {
 /// constraints can join before the backward half.
 struct HalfSolution
 {
-  core::VecX value;
+  core::VecX value{};
+  core::VecX top{};  ///< on rank 0: the same on dofs that ranks share
 };
 
 /// One operator of the tissue in the order of a step: solve b, read the answer at the probes, get
@@ -49,6 +50,8 @@ class StepSolver
   virtual double sweeps_per_factor() const { return 0.0; }
   /// Memory of a factor of our own [B], 0 when PETSc keeps it.
   virtual double factor_bytes() const { return 0.0; }
+  /// Dofs between the domains of the ranks, which one of them eliminates.
+  virtual int shared_dofs() const { return 0; }
   /// For the log and the record.
   virtual std::string describe() const = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/blas.hpp"
 #include "core/failure.hpp"
 
 namespace trocar::solve {
@@ -28,8 +29,9 @@ struct SupernodalFactor::Handles
   cholmod_factor* L = nullptr;
 };
 
-SupernodalFactor::SupernodalFactor(SymmetricPattern pattern, const std::vector<int>& order)
-    : handles_(std::make_unique<Handles>())
+SupernodalFactor::SupernodalFactor(const SymmetricPattern& pattern, const std::vector<int>& order,
+                                   int open)
+    : handles_(std::make_unique<Handles>()), closed_(pattern.size() - open)
 {
   cholmod_common& common = handles_->common;
   common.supernodal = CHOLMOD_SUPERNODAL;
@@ -52,7 +54,13 @@ SupernodalFactor::SupernodalFactor(SymmetricPattern pattern, const std::vector<i
   const int* permutation = handles_->integers(handles_->L->Perm);
   for (std::size_t k = 0; k < n; ++k)
     position_[static_cast<std::size_t>(permutation[k])] = static_cast<int>(k);
-  at_.resize(n);
+  for (std::size_t k = n - static_cast<std::size_t>(open); k < n; ++k)
+    if (position(order[k]) < closed_)
+      throw core::Failure(core::ExitCode::internal, "the open places are not the last ones");
+  const int* super = handles_->integers(handles_->L->super);
+  while (supernodes_ < static_cast<int>(handles_->L->nsuper) && super[supernodes_] < closed_)
+    ++supernodes_;
+  at_.assign(n, -1);
   for (int s = 0; s < supernodes(); ++s) {
     const Supernode node = supernode(s);
     std::fill_n(at_.begin() + node.first, node.columns, s);
@@ -93,12 +101,27 @@ double SupernodalFactor::flops() const
   return handles_->common.fl;
 }
 
-int SupernodalFactor::supernodes() const
+SupernodalFactor::Supernode SupernodalFactor::supernode(int s) const
 {
-  return static_cast<int>(handles_->L->nsuper);
+  // One that closed and open places share ends where the open ones begin.
+  Supernode node = whole_supernode(s);
+  node.columns = std::min(node.columns, closed_ - node.first);
+  return node;
 }
 
-SupernodalFactor::Supernode SupernodalFactor::supernode(int s) const
+core::MatX SupernodalFactor::open_block() const
+{
+  core::MatX L = core::MatX::Zero(size() - closed_, size() - closed_);
+  for (int s = 0; s < static_cast<int>(handles_->L->nsuper); ++s) {
+    const Supernode node = whole_supernode(s);
+    for (int j = std::max(0, closed_ - node.first); j < node.columns; ++j)
+      for (int i = j; i < node.rows; ++i)
+        L(node.row[i] - closed_, node.first + j - closed_) = node.block()(i, j);
+  }
+  return base::gram(L.transpose());
+}
+
+SupernodalFactor::Supernode SupernodalFactor::whole_supernode(int s) const
 {
   const cholmod_factor& L = *handles_->L;
   const int* super = handles_->integers(L.super);

@@ -21,9 +21,10 @@ struct SymmetricPattern
 class SupernodalFactor
 {
  public:
-  /// Analyses the pattern in the given order (dof at each place). Failure (70) when it does not fit
-  /// in memory.
-  SupernodalFactor(SymmetricPattern pattern, const std::vector<int>& order);
+  /// Analyses the pattern in the given order (dof at each place). The last `open` places, which
+  /// must be coupled with each other and with all that stands before, are not eliminated: sweeps
+  /// leave there what the others pass on. Failure (70) when it does not fit in memory.
+  SupernodalFactor(const SymmetricPattern& pattern, const std::vector<int>& order, int open = 0);
   ~SupernodalFactor();
   SupernodalFactor(SupernodalFactor&&) noexcept;
   SupernodalFactor& operator=(SupernodalFactor&&) noexcept;
@@ -33,6 +34,10 @@ class SupernodalFactor
   void factorise(const std::vector<double>& values);
 
   int position(int dof) const { return position_[static_cast<std::size_t>(dof)]; }
+  int size() const { return static_cast<int>(position_.size()); }
+  int closed() const { return closed_; }  ///< places that are eliminated, the first ones
+  /// What is left of A on the open places (open x open), by place.
+  core::MatX open_block() const;
   double bytes() const;  ///< of L [B], known from the analysis
   double flops() const;  ///< of one factorisation
 
@@ -49,10 +54,11 @@ class SupernodalFactor
     int below() const { return rows - columns; }
     Eigen::Map<const core::MatX> block() const { return {L, rows, columns}; }
   };
-  int supernodes() const;
+  int supernodes() const { return supernodes_; }
   Supernode supernode(int s) const;
+  /// -1 at open places.
   int supernode_at(int position) const { return at_[static_cast<std::size_t>(position)]; }
-  /// The supernode that this one's update goes to first, -1 for a root.
+  /// The supernode that this one's update goes to first, -1 for a root and for open places.
   int parent(int s) const { return parent_[static_cast<std::size_t>(s)]; }
 
   void forward(core::VecX& b) const;   ///< b <- L⁻¹ b, by position
@@ -64,9 +70,12 @@ class SupernodalFactor
 
  private:
   void copy_single();
+  Supernode whole_supernode(int s) const;
 
   struct Handles;
   std::unique_ptr<Handles> handles_;
+  int closed_ = 0;
+  int supernodes_ = 0;         ///< that begin before the open places
   std::vector<int> position_;  ///< by dof
   std::vector<int> at_;        ///< supernode by position
   std::vector<int> parent_;

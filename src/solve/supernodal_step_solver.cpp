@@ -3,50 +3,17 @@
 #include "core/stopwatch.hpp"
 
 namespace trocar::solve {
-namespace {
 
-// A core of today, to weigh a factorisation against sweeps without a clock: what is decided must
-// not depend on what else the machine does.
-constexpr double product_rate = 5e10;  ///< [flop/s]
-constexpr double read_rate = 2e10;     ///< [B/s]
-constexpr double least_worth = 20.0;   ///< in sweeps: small factors run far below the rates
-
-}  // namespace
-
-SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
-    : space_(&parts.space), fixed_(&parts.fixed), ledger_(&parts.ledger), reuse_(parts.reuse)
+void SupernodalStepSolver::forget_columns()
 {
-  number_free_dofs();
-  const Blocks blocks = gather_blocks(parts.pattern);
-  base::on_root(space_->comm(), [&] {
-    analyse(blocks, parts.pinned);
-    bytes_ = factor_->bytes();
-    sweeps_per_factor_ = std::max(
-        least_worth, factor_->flops() / product_rate / (2.0 * factor_->bytes() / read_rate));
-  });
-  bytes_ = space_->comm().max(bytes_);
-  sweeps_per_factor_ = space_->comm().max(sweeps_per_factor_);
-}
-
-void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
-{
-  const std::vector<double>& mine = values.values();
-  std::vector<double> all;
-  const base::Comm& comm = space_->comm();
-  if (comm.size() > 1) {
-    if (comm.root()) all.resize(static_cast<std::size_t>(value_start_.back()));
-    TROCAR_MPI(MPI_Gatherv(mine.data(), static_cast<int>(mine.size()), MPI_DOUBLE, all.data(),
-                           value_count_.data(), value_start_.data(), MPI_DOUBLE, 0, comm.get()));
-  }
-  base::on_root(comm, [&] {
-    const std::vector<double>& from = comm.size() > 1 ? all : mine;
-    std::vector<double> entries(source_.size());
-    for (std::size_t k = 0; k < source_.size(); ++k) entries[k] = from[source_[k]];
-    factor_->factorise(entries);
-  });
-  forget_columns();
-  R_.clear();
-  ++ledger_->factorisations;
+  if (columns_)
+    columns_->clear();
+  else if (factor_)
+    columns_.emplace(*factor_);
+  top_block_.forget_columns();
+  first_slot_of_node_.clear();
+  slot_of_wide_.clear();
+  slots_ = 0;
 }
 
 bool SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
@@ -57,59 +24,64 @@ bool SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
   return true;
 }
 
-void SupernodalStepSolver::forget_columns()
+OwnedField SupernodalStepSolver::turned_back(const OwnedField& field) const
 {
-  if (columns_)
-    columns_->clear();
-  else if (factor_)
-    columns_.emplace(*factor_);
-  first_slot_of_node_.clear();
-  slot_of_wide_.clear();
-  slots_ = 0;
+  OwnedField back = field;
+  if (R_.empty()) return back;
+  for (int local = 0; local < space_->owned(); ++local)
+    back.node(local) = turned(space_->file_node(local)).transpose() * field.node(local);
+  return back;
 }
 
-core::VecX SupernodalStepSolver::gather_free(const OwnedField& field) const
+/// The field on the domain's dofs by place, zero on the open ones.
+core::VecX SupernodalStepSolver::mine(const OwnedField& field) const
 {
-  const base::Comm& comm = space_->comm();
-  core::VecX all(comm.root() ? 3 * space_->global() : 0);
-  OwnedField back = field;
-  if (!R_.empty())
-    for (int local = 0; local < space_->owned(); ++local)
-      back.node(local) = turned(space_->file_node(local)).transpose() * field.node(local);
-  TROCAR_MPI(MPI_Gatherv(back.value.data(), static_cast<int>(back.value.size()), MPI_DOUBLE,
-                         all.data(), dof_count_.data(), dof_start_.data(), MPI_DOUBLE, 0,
-                         comm.get()));
-  if (!comm.root()) return {};
-  core::VecX y(free_count_);
-  for (std::size_t dof = 0; dof < free_.size(); ++dof)
-    if (free_[dof] >= 0) y[factor_->position(free_[dof])] = all[static_cast<Eigen::Index>(dof)];
+  core::VecX y = core::VecX::Zero(factor_ ? factor_->size() : 0);
+  for (std::size_t dof = 0; dof < index_.size(); ++dof)
+    if (index_[dof] >= 0)
+      y[factor_->position(index_[dof])] = field.value[static_cast<Eigen::Index>(dof)];
   return y;
 }
 
-OwnedField SupernodalStepSolver::scatter_free(const core::VecX& y) const
+/// This rank's share of the field on the top.
+core::VecX SupernodalStepSolver::top_part(const OwnedField& field) const
 {
-  const base::Comm& comm = space_->comm();
-  core::VecX all;
-  if (comm.root()) {
-    all = core::VecX::Zero(3 * space_->global());
-    for (std::size_t dof = 0; dof < free_.size(); ++dof)
-      if (free_[dof] >= 0) all[static_cast<Eigen::Index>(dof)] = y[factor_->position(free_[dof])];
-  }
-  OwnedField field = space_->zero();
-  TROCAR_MPI(MPI_Scatterv(all.data(), dof_count_.data(), dof_start_.data(), MPI_DOUBLE,
-                          field.value.data(), static_cast<int>(field.value.size()), MPI_DOUBLE, 0,
-                          comm.get()));
-  if (!R_.empty())
-    for (int local = 0; local < space_->owned(); ++local)
-      field.node(local) = (turned(space_->file_node(local)) * field.node(local)).eval();
-  return field;
+  core::VecX top = core::VecX::Zero(static_cast<Eigen::Index>(top_.size()));
+  const int first = 3 * space_->first();
+  for (std::size_t k = 0; k < top_.size(); ++k)
+    if (top_[k] >= first && top_[k] < first + space_->owned_dofs())
+      top[static_cast<Eigen::Index>(k)] = field.value[top_[k] - first];
+  return top;
+}
+
+/// Adds what a forward sweep left at the open places.
+void SupernodalStepSolver::add_left_over(const core::VecX& y, core::VecX& top) const
+{
+  for (std::size_t k = 0; k < open_.size(); ++k)
+    top[open_[k]] += y[factor_->position(factor_->closed() + static_cast<int>(k))];
+}
+
+core::VecX SupernodalStepSolver::sum_on_root(const core::VecX& values) const
+{
+  core::VecX sum = values;
+  if (space_->comm().size() == 1) return sum;
+  TROCAR_MPI(MPI_Reduce(values.data(), sum.data(), static_cast<int>(values.size()), MPI_DOUBLE,
+                        MPI_SUM, 0, space_->comm().get()));
+  return sum;
 }
 
 HalfSolution SupernodalStepSolver::begin(const OwnedField& b)
 {
   if (!reuse_) forget_columns();
-  HalfSolution half{gather_free(b)};
+  const OwnedField back = turned_back(b);
+  HalfSolution half{mine(back), {}};
   if (factor_) R_.empty() ? factor_->forward(half.value) : factor_->forward_single(half.value);
+  if (!top_.empty()) {
+    half.top = top_part(back);
+    add_left_over(half.value, half.top);
+    half.top = sum_on_root(half.top);
+    if (space_->comm().root()) half.top = top_block_.forward(half.top);
+  }
   ++ledger_->half_sweeps;
   return half;
 }
@@ -120,26 +92,72 @@ std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, Compliance
   std::vector<int> slots, fresh;
   for (int node : probes.nodes) {
     const auto [entry, is_fresh] = first_slot_of_node_.emplace(node, slots_);
+    if (is_fresh) {
+      fresh.push_back(node);
+      slots_ += 3;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       slots.push_back(entry->second + axis);
-      const int dof = free_[static_cast<std::size_t>(3 * space_->number_of_file(node) + axis)];
-      if (dof >= 0) ++(is_fresh ? report.built : report.reused);
-      if (!is_fresh) continue;
-      ++slots_;
-      fresh.push_back(dof >= 0 && factor_ ? factor_->position(dof) : -1);
+      if (!fixed_->fixed(node, axis)) ++(is_fresh ? report.built : report.reused);
     }
   }
-  if (columns_ && !fresh.empty()) columns_->add_units(fresh);
+  if (!fresh.empty()) add_nodes(fresh);
   for (const WideProbe* wide : probes.wide) {
     const auto [entry, is_fresh] = slot_of_wide_.emplace(wide->id, slots_);
     slots.push_back(entry->second);
     ++(is_fresh ? report.built : report.reused);
     if (!is_fresh) continue;
     ++slots_;
-    const core::VecX vector = gather_free(wide->vector);
-    if (columns_) columns_->add_dense(vector);
+    OwnedField vector = wide->vector;
+    fixed_->clear(vector);
+    add_wide(turned_back(vector));
   }
   return slots;
+}
+
+void SupernodalStepSolver::add_nodes(const std::vector<int>& nodes)
+{
+  std::vector<int> positions;
+  core::MatX top = core::MatX::Zero(static_cast<Eigen::Index>(top_.size()),
+                                    3 * static_cast<Eigen::Index>(nodes.size()));
+  for (int node : nodes)
+    for (int axis = 0; axis < 3; ++axis) {
+      const int dof = 3 * space_->number_of_file(node) + axis;
+      const int owned = dof - 3 * space_->first();
+      const bool here = owned >= 0 && owned < space_->owned_dofs();
+      const int index = here ? index_[static_cast<std::size_t>(owned)] : -1;
+      const auto in_top = top_index_.find(dof);
+      if (space_->comm().root() && in_top != top_index_.end())
+        top(in_top->second, static_cast<Eigen::Index>(positions.size())) = 1.0;
+      positions.push_back(index >= 0 ? factor_->position(index) : -1);
+    }
+  if (columns_) {
+    const core::MatX rest = columns_->add_units(positions);
+    for (std::size_t k = 0; k < open_.size(); ++k)
+      top.row(open_[k]) +=
+          rest.row(factor_->position(factor_->closed() + static_cast<int>(k)) - factor_->closed());
+  }
+  add_to_top(top);
+}
+
+void SupernodalStepSolver::add_wide(const OwnedField& vector)
+{
+  core::MatX top = top_part(vector);
+  if (columns_) {
+    const core::VecX rest = columns_->add_dense(mine(vector));
+    for (std::size_t k = 0; k < open_.size(); ++k)
+      top(open_[k], 0) +=
+          rest[factor_->position(factor_->closed() + static_cast<int>(k)) - factor_->closed()];
+  }
+  add_to_top(top);
+}
+
+void SupernodalStepSolver::add_to_top(core::MatX& columns)
+{
+  if (top_.empty()) return;
+  const core::VecX sum = sum_on_root(columns.reshaped());
+  if (space_->comm().root())
+    top_block_.add(Eigen::Map<const core::MatX>(sum.data(), columns.rows(), columns.cols()));
 }
 
 /// The three rows of every probed node turned with it.
@@ -169,14 +187,15 @@ core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& r
   report = {};
   report.probes = probes.size();
   const std::vector<int> slots = slots_of(probes, report);
-  core::MatX C(probes.size(), probes.size());
-  if (columns_) {
-    C = columns_->block(slots);
-    turn_rows(probes, C);
-    C.transposeInPlace();
-    turn_rows(probes, C);
-  }
-  TROCAR_MPI(MPI_Bcast(C.data(), static_cast<int>(C.size()), MPI_DOUBLE, 0, space_->comm().get()));
+  core::MatX C = core::MatX::Zero(probes.size(), probes.size());
+  if (columns_) C = columns_->block(slots);
+  if (space_->comm().root() && !top_.empty()) C += top_block_.block(slots);
+  if (space_->comm().size() > 1)
+    TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, C.data(), static_cast<int>(C.size()), MPI_DOUBLE,
+                             MPI_SUM, space_->comm().get()));
+  turn_rows(probes, C);
+  C.transposeInPlace();
+  turn_rows(probes, C);
   ledger_->columns_built += report.built;
   ledger_->columns_reused += report.reused;
   report.seconds = watch.seconds();
@@ -188,34 +207,56 @@ core::VecX SupernodalStepSolver::at(const Probes& probes, const HalfSolution& ha
   ComplianceReport report;
   const std::vector<int> slots = slots_of(probes, report);
   ledger_->columns_built += report.built;
-  core::VecX read(probes.size());
-  if (columns_) {
-    core::MatX all = columns_->at(half.value)(slots);
-    turn_rows(probes, all);
-    read = all;
-  }
-  TROCAR_MPI(
-      MPI_Bcast(read.data(), static_cast<int>(read.size()), MPI_DOUBLE, 0, space_->comm().get()));
+  core::MatX read = core::MatX::Zero(probes.size(), 1);
+  if (columns_) read = columns_->at(half.value)(slots);
+  if (space_->comm().root() && !top_.empty()) read.col(0) += top_block_.at(half.top)(slots);
+  if (space_->comm().size() > 1)
+    TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, read.data(), static_cast<int>(read.size()), MPI_DOUBLE,
+                             MPI_SUM, space_->comm().get()));
+  turn_rows(probes, read);
   return read;
 }
 
 OwnedField SupernodalStepSolver::finish(const HalfSolution& half, const Probes& probes,
                                         const core::VecX& f)
 {
-  core::VecX y = half.value;
+  core::VecX y = half.value, top = half.top;
   if (probes.size() > 0) {
     ComplianceReport report;
     const std::vector<int> slots = slots_of(probes, report);
     ledger_->columns_built += report.built;
-    if (columns_) {
-      core::VecX by_slot = core::VecX::Zero(slots_);
-      by_slot(slots) = turned_back(probes, f);
-      columns_->push(by_slot, y);
-    }
+    core::VecX by_slot = core::VecX::Zero(slots_);
+    by_slot(slots) = turned_back(probes, f);
+    if (columns_) columns_->push(by_slot, y);
+    if (space_->comm().root() && !top_.empty()) top_block_.push(by_slot, top);
+  }
+  if (!top_.empty()) {
+    if (space_->comm().root()) top = top_block_.backward(top);
+    TROCAR_MPI(
+        MPI_Bcast(top.data(), static_cast<int>(top.size()), MPI_DOUBLE, 0, space_->comm().get()));
+    for (std::size_t k = 0; k < open_.size(); ++k)
+      y[factor_->position(factor_->closed() + static_cast<int>(k))] = top[open_[k]];
   }
   if (factor_) R_.empty() ? factor_->backward(y) : factor_->backward_single(y);
   ++ledger_->half_sweeps;
-  return scatter_free(y);
+  return assembled(y, top);
+}
+
+/// The field from the domain's and the top's dofs, turned with the nodes.
+OwnedField SupernodalStepSolver::assembled(const core::VecX& y, const core::VecX& top) const
+{
+  OwnedField field = space_->zero();
+  for (std::size_t dof = 0; dof < index_.size(); ++dof)
+    if (index_[dof] >= 0)
+      field.value[static_cast<Eigen::Index>(dof)] = y[factor_->position(index_[dof])];
+  const int first = 3 * space_->first();
+  for (std::size_t k = 0; k < top_.size(); ++k)
+    if (top_[k] >= first && top_[k] < first + space_->owned_dofs())
+      field.value[top_[k] - first] = top[static_cast<Eigen::Index>(k)];
+  if (R_.empty()) return field;
+  for (int local = 0; local < space_->owned(); ++local)
+    field.node(local) = (turned(space_->file_node(local)) * field.node(local)).eval();
+  return field;
 }
 
 std::string SupernodalStepSolver::describe() const
@@ -223,7 +264,7 @@ std::string SupernodalStepSolver::describe() const
   return "supernodal cholesky (cholmod, factor " +
          std::to_string(static_cast<long long>(bytes_ / 1e6)) + " MB" +
          (pinned_ > 0 ? ", " + std::to_string(pinned_) + " nodes pinned" : "") +
-         (space_->comm().size() > 1 ? ", on rank 0)" : ")");
+         (top_.empty() ? ")" : ", ranks share " + std::to_string(top_.size()) + " dofs)");
 }
 
 }  // namespace trocar::solve

@@ -3,15 +3,17 @@
 #include <map>
 #include <optional>
 
+#include "solve/domain.hpp"
 #include "solve/reach_columns.hpp"
 #include "solve/step_solver.hpp"
+#include "solve/top_block.hpp"
 
 namespace trocar::solve {
 
-/// Supernodal Cholesky on rank 0 (CHOLMOD, METIS on the graph of the free nodes): one forward and
-/// one backward half-sweep per step serve free motion, constraints and correction, and compliance
-/// columns cost a path of the elimination tree (docs/theory.md section 8). Other ranks assemble and
-/// wait.
+/// Supernodal Cholesky (CHOLMOD, METIS on the graph of the free nodes): one forward and one
+/// backward half-sweep per step serve free motion, constraints and correction, and compliance
+/// columns cost a path of the elimination tree (docs/theory.md section 8). Every rank eliminates
+/// the inside of its domain; what is left on the dofs between them is a dense block on rank 0.
 class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
 {
  public:
@@ -25,28 +27,35 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   bool turn(const std::vector<core::Mat3>& R) override;
   double sweeps_per_factor() const override { return sweeps_per_factor_; }
   double factor_bytes() const override { return bytes_; }
+  int shared_dofs() const override { return static_cast<int>(top_.size()); }
   std::string describe() const override;
 
  private:
-  /// Upper block pattern of the whole matrix in global node numbers, on rank 0.
-  struct Blocks
-  {
-    std::vector<int> row, column;
-  };
-
   core::MatX block(const Probes& probes, ComplianceReport& report) override;
   void forget_columns();
-  void number_free_dofs();
-  Blocks gather_blocks(const fem::BlockPattern& pattern);
-  void analyse(const Blocks& blocks, const std::vector<int>& pinned);
-  std::vector<int> dof_order(const std::vector<std::vector<int>>& neighbours,
-                             const std::vector<int>& pinned) const;
+  WholePattern gather_pattern(const StepSolverParts& parts);
+  void hand_out(Dissection& dissection);
+  void weigh();
+  std::vector<double> gather_values(const fem::BlockMatrix& values) const;
+  core::MatX top_of(const std::vector<double>& values) const;
+  std::vector<double> entries_for_me(const std::vector<double>& values,
+                                     const core::MatX& top) const;
+  void gather_open_blocks(core::MatX& top) const;
+
   std::vector<int> slots_of(const Probes& probes, ComplianceReport& report);
-  core::VecX gather_free(const OwnedField& field) const;
-  OwnedField scatter_free(const core::VecX& y) const;
-  void turn_rows(const Probes& probes, core::MatX& rows) const;
+  void add_nodes(const std::vector<int>& nodes);
+  void add_wide(const OwnedField& vector);
+  void add_to_top(core::MatX& columns);
+  OwnedField turned_back(const OwnedField& field) const;
   core::VecX turned_back(const Probes& probes, const core::VecX& f) const;
+  void turn_rows(const Probes& probes, core::MatX& rows) const;
   const core::Mat3& turned(int file_node) const { return R_[static_cast<std::size_t>(file_node)]; }
+
+  core::VecX mine(const OwnedField& field) const;
+  core::VecX top_part(const OwnedField& field) const;
+  core::VecX sum_on_root(const core::VecX& values) const;
+  void add_left_over(const core::VecX& y, core::VecX& top) const;
+  OwnedField assembled(const core::VecX& y, const core::VecX& top) const;
 
   const fem::Space* space_;
   const fem::Dirichlet* fixed_;
@@ -54,15 +63,19 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   bool reuse_;
   double bytes_ = 0.0;
   double sweeps_per_factor_ = 0.0;
-  int pinned_ = 0;                              ///< nodes put last
-  std::vector<int> value_count_, value_start_;  ///< doubles of every rank's blocks
-  std::vector<int> dof_count_, dof_start_;      ///< dofs of every rank
-  std::vector<int> free_;                       ///< free number by global dof, -1 when fixed
-  int free_count_ = 0;
-  std::vector<std::size_t> source_;  ///< by matrix entry: where its value stands in the blocks
-  std::optional<SupernodalFactor> factor_;  ///< on rank 0
-  std::optional<ReachColumns> columns_;     ///< on rank 0
-  std::map<int, int> first_slot_of_node_;   ///< file node -> slot of its x dof
+  int pinned_ = 0;                                 ///< nodes put last
+  std::vector<int> value_count_, value_start_;     ///< doubles of every rank's blocks
+  Domain domain_;                                  ///< this rank's
+  std::vector<int> top_;                           ///< whole dofs of the top, ascending
+  std::vector<int> open_;                          ///< place in the top of every open dof
+  std::map<int, int> top_index_;                   ///< place in the top by whole dof
+  std::vector<std::vector<long long>> sources_;    ///< by rank, on rank 0
+  std::vector<Dissection::TopEntry> top_entries_;  ///< on rank 0
+  std::vector<int> index_;                         ///< dof of the domain by owned dof, or -1
+  std::optional<SupernodalFactor> factor_;         ///< of the domain, unless it is empty
+  std::optional<ReachColumns> columns_;            ///< with it
+  TopBlock top_block_;                             ///< on rank 0
+  std::map<int, int> first_slot_of_node_;          ///< file node -> slot of its x dof
   std::map<long long, int> slot_of_wide_;
   int slots_ = 0;
   std::vector<core::Mat3> R_;  ///< see `turn`

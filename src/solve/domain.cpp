@@ -1,0 +1,286 @@
+#include "solve/domain.hpp"
+
+#include <metis.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/failure.hpp"
+
+namespace trocar::solve {
+namespace {
+
+constexpr double most_extra_flops = 1.1;  ///< what pinning may cost the factors
+constexpr int in_top = -1;
+
+using Graph = std::vector<std::vector<int>>;  ///< neighbours of every node
+
+std::size_t at(int i)
+{
+  return static_cast<std::size_t>(i);
+}
+
+/// One entry of the upper triangle in free dofs, and where its value stands in the blocks.
+struct Entry
+{
+  int column, row;
+  long long source;
+};
+
+/// The pattern of entries in any order, and their sources in its order.
+SymmetricPattern lay_out(std::vector<Entry> entries, int size, std::vector<long long>& source)
+{
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.column != b.column ? a.column < b.column : a.row < b.row;
+  });
+  SymmetricPattern pattern;
+  pattern.start.assign(static_cast<std::size_t>(size) + 1, 0);
+  for (const Entry& entry : entries) {
+    ++pattern.start[static_cast<std::size_t>(entry.column) + 1];
+    pattern.row.push_back(entry.row);
+    source.push_back(entry.source);
+  }
+  std::partial_sum(pattern.start.begin(), pattern.start.end(), pattern.start.begin());
+  return pattern;
+}
+
+/// Nested dissection of a graph given as neighbour lists: the vertex at each place.
+std::vector<int> dissection(const Graph& neighbours)
+{
+  const auto n = neighbours.size();
+  std::vector<idx_t> start{0}, edge;
+  for (const auto& list : neighbours) {
+    edge.insert(edge.end(), list.begin(), list.end());
+    start.push_back(static_cast<idx_t>(edge.size()));
+  }
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  if (edge.empty()) return order;
+  auto count = static_cast<idx_t>(n);
+  std::vector<idx_t> permutation(n), inverse(n);
+  const int status = METIS_NodeND(&count, start.data(), edge.data(), nullptr, nullptr,
+                                  permutation.data(), inverse.data());
+  if (status != METIS_OK)
+    throw core::Failure(core::ExitCode::internal,
+                        "METIS could not order the matrix (" + std::to_string(status) + ")");
+  return {permutation.begin(), permutation.end()};
+}
+
+Graph graph_of(const WholePattern& whole)
+{
+  const auto any_free = [&](int node) {
+    return whole.free[at(3 * node)] || whole.free[at(3 * node + 1)] || whole.free[at(3 * node + 2)];
+  };
+  Graph neighbours(at(whole.nodes()));
+  for (std::size_t k = 0; k < whole.row.size(); ++k) {
+    const int i = whole.row[k], j = whole.column[k];
+    if (i == j || !any_free(i) || !any_free(j)) continue;
+    neighbours[at(i)].push_back(j);
+    neighbours[at(j)].push_back(i);
+  }
+  return neighbours;
+}
+
+/// Rank in whose domain a node lies, or `in_top`.
+std::vector<int> homes(const WholePattern& whole, const Graph& neighbours)
+{
+  std::vector<int> home(at(whole.nodes()));
+  for (int node = 0; node < whole.nodes(); ++node) {
+    const int mine = whole.owner(node);
+    const bool border = std::any_of(neighbours[at(node)].begin(), neighbours[at(node)].end(),
+                                    [&](int other) { return whole.owner(other) > mine; });
+    home[at(node)] = border ? in_top : mine;
+  }
+  if (whole.ranks() > 1)
+    for (int node : whole.pinned) home[at(node)] = in_top;
+  return home;
+}
+
+/// Numbers of dofs within the domains and in the top, and the entries of each domain.
+struct Builder
+{
+  const WholePattern& whole;
+  const Graph neighbours;
+  Dissection result;
+  std::vector<int> home;                     ///< by node
+  std::vector<int> index;                    ///< by whole dof: in its domain, or in the top
+  std::vector<std::vector<int>> open_index;  ///< by rank and top dof: dof of the domain, or -1
+  std::vector<std::vector<Entry>> entries;   ///< by rank
+
+  explicit Builder(const WholePattern& w)
+      : whole(w), neighbours(graph_of(w)), index(w.free.size(), -1), entries(at(w.ranks()))
+  {
+    result.domain.resize(at(whole.ranks()));
+    result.source.resize(at(whole.ranks()));
+    home = homes(whole, neighbours);
+    result.pinned = static_cast<int>(whole.pinned.size());
+    number();
+    collect();
+    for (int rank = 0; rank < whole.ranks(); ++rank) finish(rank);
+  }
+
+  /// Counts the work, to compare ways to share it.
+  void weigh()
+  {
+    result.flops = std::pow(static_cast<double>(result.top.size()), 3) / 3.0;
+    for (const Domain& domain : result.domain)
+      if (domain.pattern.size() > domain.open)
+        result.flops += SupernodalFactor(domain.pattern, domain.order, domain.open).flops();
+  }
+
+  int rank_of(int node) const { return home[at(node)]; }
+
+  void number()
+  {
+    for (int node = 0; node < whole.nodes(); ++node)
+      for (int dof = 3 * node; dof < 3 * node + 3; ++dof) {
+        if (!whole.free[at(dof)]) continue;
+        std::vector<int>& list =
+            rank_of(node) == in_top ? result.top : result.domain[at(rank_of(node))].dof;
+        index[at(dof)] = static_cast<int>(list.size());
+        list.push_back(dof);
+      }
+    open_index.assign(at(whole.ranks()), std::vector<int>(result.top.size(), -1));
+    for (int rank = 0; rank < whole.ranks(); ++rank) open_up(rank);
+  }
+
+  /// Adds the dofs of the top that a domain touches.
+  void open_up(int rank)
+  {
+    Domain& domain = result.domain[at(rank)];
+    std::vector<int> touched;
+    for (int node = 0; node < whole.nodes(); ++node)
+      if (rank_of(node) == rank)
+        for (int other : neighbours[at(node)])
+          if (rank_of(other) == in_top) touched.push_back(other);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (int node : touched)
+      for (int dof = 3 * node; dof < 3 * node + 3; ++dof) {
+        if (!whole.free[at(dof)]) continue;
+        open_index[at(rank)][at(index[at(dof)])] = static_cast<int>(domain.dof.size());
+        domain.dof.push_back(dof);
+        ++domain.open;
+      }
+  }
+
+  /// Shares the entries of the blocks out.
+  void collect()
+  {
+    for (std::size_t k = 0; k < whole.row.size(); ++k)
+      for (int b = 0; b < 3; ++b)
+        for (int a = 0; a <= (whole.row[k] == whole.column[k] ? b : 2); ++a)
+          add(3 * whole.row[k] + a, 3 * whole.column[k] + b, 9 * k + at(a + 3 * b));
+  }
+
+  void add(int r, int c, std::size_t source)
+  {
+    if (!whole.free[at(r)] || !whole.free[at(c)]) return;
+    const int from = rank_of(r / 3), to = rank_of(c / 3);
+    if (from == in_top && to == in_top) {
+      result.top_entries.push_back({index[at(r)], index[at(c)], source});
+      return;
+    }
+    const int rank = std::max(from, to);
+    const auto local = [&](int dof, int owner) {
+      return owner == in_top ? open_index[at(rank)][at(index[at(dof)])] : index[at(dof)];
+    };
+    const int i = local(r, from), j = local(c, to);
+    entries[at(rank)].push_back({std::max(i, j), std::min(i, j), static_cast<long long>(source)});
+  }
+
+  void finish(int rank)
+  {
+    Domain& domain = result.domain[at(rank)];
+    const int size = static_cast<int>(domain.dof.size()), closed = size - domain.open;
+    for (int j = closed; j < size; ++j) {  // the open places among each other
+      for (int i = closed; i < j; ++i) entries[at(rank)].push_back({j, i, Source::nothing});
+      entries[at(rank)].push_back({j, j, Source::row_sum(index[at(domain.dof[at(j)])])});
+    }
+    if (domain.open > 0) tie_loose_ends(rank, closed);
+    domain.pattern = lay_out(std::move(entries[at(rank)]), size, result.source[at(rank)]);
+    domain.order = order(rank, whole.ranks() > 1 ? std::vector<int>{} : whole.pinned);
+  }
+
+  /// Parts of a domain that touch no open place are tied to one by a zero, so that the open ones
+  /// stay last in the elimination tree.
+  void tie_loose_ends(int rank, int first_open)
+  {
+    std::vector<bool> seen(home.size(), false);
+    for (int start = 0; start < whole.nodes(); ++start) {
+      if (rank_of(start) != rank || seen[at(start)]) continue;
+      bool tied = false;
+      int free_dof = -1;
+      std::vector<int> stack{start};
+      seen[at(start)] = true;
+      while (!stack.empty()) {
+        const int node = stack.back();
+        stack.pop_back();
+        for (int dof = 3 * node; dof < 3 * node + 3; ++dof)
+          if (whole.free[at(dof)]) free_dof = index[at(dof)];
+        for (int other : neighbours[at(node)]) {
+          tied = tied || rank_of(other) == in_top;
+          if (rank_of(other) != rank || seen[at(other)]) continue;
+          seen[at(other)] = true;
+          stack.push_back(other);
+        }
+      }
+      if (!tied && free_dof >= 0)
+        entries[at(rank)].push_back({first_open, free_dof, Source::nothing});
+    }
+  }
+
+  /// Nested dissection of the domain's nodes, the graph of which has nine times fewer edges than
+  /// that of its dofs and gives the same fill; those in `last` after them, and the open ones at the
+  /// end.
+  std::vector<int> order(int rank, const std::vector<int>& last) const
+  {
+    const Domain& domain = result.domain[at(rank)];
+    std::vector<int> place(home.size(), -1), nodes;  // of the nodes to dissect
+    std::vector<bool> is_last(home.size(), false);
+    for (int node : last) is_last[at(node)] = true;
+    for (int node = 0; node < whole.nodes(); ++node)
+      if (rank_of(node) == rank && !is_last[at(node)]) {
+        place[at(node)] = static_cast<int>(nodes.size());
+        nodes.push_back(node);
+      }
+    Graph graph(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      for (int other : neighbours[at(nodes[k])])
+        if (place[at(other)] >= 0) graph[k].push_back(place[at(other)]);
+    std::vector<int> order;
+    const auto add_node = [&](int node) {
+      for (int dof = 3 * node; dof < 3 * node + 3; ++dof)
+        if (whole.free[at(dof)]) order.push_back(index[at(dof)]);
+    };
+    for (int k : dissection(graph)) add_node(nodes[at(k)]);
+    for (int node : last) add_node(node);
+    for (int dof = static_cast<int>(order.size()); dof < static_cast<int>(domain.dof.size()); ++dof)
+      order.push_back(dof);
+    return order;
+  }
+};
+
+}  // namespace
+
+int WholePattern::owner(int node) const
+{
+  const auto after = std::upper_bound(first_of_rank.begin(), first_of_rank.end(), node);
+  return static_cast<int>(after - first_of_rank.begin()) - 1;
+}
+
+Dissection dissect(const WholePattern& whole)
+{
+  if (whole.pinned.empty()) return Builder(whole).result;
+  WholePattern without = whole;
+  without.pinned.clear();
+  Builder plain(without), pinned(whole);
+  plain.weigh();
+  pinned.weigh();
+  const bool worth = pinned.result.flops <= most_extra_flops * plain.result.flops;
+  const bool fits = whole.ranks() == 1 || static_cast<int>(pinned.result.top.size()) <= most_top;
+  return worth && fits ? pinned.result : plain.result;
+}
+
+}  // namespace trocar::solve

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "solve/supernodal_factor.hpp"
+
+namespace trocar::solve {
+
+/// The blocks of the whole matrix (upper triangle, node numbers), which dofs are free, and who owns
+/// the nodes.
+struct WholePattern
+{
+  std::vector<int> row, column;    ///< by block
+  std::vector<bool> free;          ///< by dof, 3 node + axis
+  std::vector<int> first_of_rank;  ///< first node of every rank, and the number of nodes
+  std::vector<int> pinned;         ///< nodes to be eliminated last
+
+  int ranks() const { return static_cast<int>(first_of_rank.size()) - 1; }
+  int nodes() const { return first_of_rank.back(); }
+  int owner(int node) const;
+};
+
+/// One rank's part of an elimination: the dofs inside its domain, which no other domain touches,
+/// and after them the dofs of the top that they touch.
+struct Domain
+{
+  std::vector<int> dof;  ///< whole dof by dof of the domain
+  int open = 0;          ///< how many of them belong to the top
+  SymmetricPattern pattern;
+  std::vector<int> order;  ///< dof of the domain at each place
+};
+
+/// Where an entry of a domain's matrix comes from: a place in the blocks' values, or one of these.
+struct Source
+{
+  static constexpr long long nothing = -1;
+  /// Row sum of the top: it keeps an open block positive definite, and is taken off again.
+  static long long row_sum(int top_dof) { return -2 - top_dof; }
+};
+
+/// The elimination of the whole matrix shared out to the ranks. With one rank there is no top.
+struct Dissection
+{
+  std::vector<Domain> domain;                  ///< by rank
+  std::vector<std::vector<long long>> source;  ///< by rank and entry of the domain's pattern
+  std::vector<int> top;                        ///< whole dofs of the top, ascending
+  struct TopEntry
+  {
+    int row, column;  ///< of the top
+    std::size_t source;
+  };
+  std::vector<TopEntry> top_entries;
+  int pinned = 0;      ///< nodes that were put last
+  double flops = 0.0;  ///< of all factors
+};
+
+/// Shares the elimination out. The top holds the nodes with a neighbour of a higher rank. Pinned
+/// nodes join it, or with one rank are put last, unless that makes it larger than `most_top` or
+/// costs the factors more than a tenth.
+Dissection dissect(const WholePattern& whole);
+
+constexpr int most_top = 6000;  ///< dofs that ranks may share before others solve better
+
+}  // namespace trocar::solve

@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <numeric>
+
+#include "solve/supernodal_step_solver.hpp"
+
+// How the elimination is shared out, and how the operator's values reach those who factor them.
+namespace trocar::solve {
+namespace {
+
+// A core of today, to weigh a factorisation against sweeps without a clock: what is decided must
+// not depend on what else the machine does.
+constexpr double product_rate = 5e10;  ///< [flop/s]
+constexpr double read_rate = 2e10;     ///< [B/s]
+constexpr double least_worth = 20.0;   ///< in sweeps: small factors run far below the rates
+
+template <class T>
+MPI_Datatype type_of();
+template <>
+MPI_Datatype type_of<int>()
+{
+  return MPI_INT;
+}
+template <>
+MPI_Datatype type_of<double>()
+{
+  return MPI_DOUBLE;
+}
+
+template <class T>
+void send(const std::vector<T>& values, int rank, MPI_Comm comm)
+{
+  TROCAR_MPI(MPI_Send(values.data(), static_cast<int>(values.size()), type_of<T>(), rank, 0, comm));
+}
+
+template <class T>
+void receive(std::vector<T>& values, int rank, MPI_Comm comm)
+{
+  MPI_Status status;
+  int count = 0;
+  TROCAR_MPI(MPI_Probe(rank, 0, comm, &status));
+  TROCAR_MPI(MPI_Get_count(&status, type_of<T>(), &count));
+  values.resize(static_cast<std::size_t>(count));
+  TROCAR_MPI(MPI_Recv(values.data(), count, type_of<T>(), rank, 0, comm, MPI_STATUS_IGNORE));
+}
+
+/// The parts of a domain that travel.
+std::array<std::vector<int>*, 4> parts_of(Domain& domain)
+{
+  return {&domain.dof, &domain.pattern.start, &domain.pattern.row, &domain.order};
+}
+
+}  // namespace
+
+SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
+    : space_(&parts.space), fixed_(&parts.fixed), ledger_(&parts.ledger), reuse_(parts.reuse)
+{
+  const WholePattern whole = gather_pattern(parts);
+  Dissection dissection;
+  base::on_root(space_->comm(), [&] { dissection = dissect(whole); });
+  hand_out(dissection);
+  base::on_all(space_->comm(), [&] {
+    if (domain_.pattern.size() > domain_.open)
+      factor_.emplace(domain_.pattern, domain_.order, domain_.open);
+  });
+  domain_.pattern = {};
+  weigh();
+}
+
+WholePattern SupernodalStepSolver::gather_pattern(const StepSolverParts& parts)
+{
+  const fem::BlockPattern& pattern = parts.pattern;
+  std::vector<int> row, column = pattern.column();
+  for (int i = 0; i < space_->owned(); ++i)
+    row.insert(row.end(),
+               static_cast<std::size_t>(pattern.row_start()[static_cast<std::size_t>(i) + 1] -
+                                        pattern.row_start()[static_cast<std::size_t>(i)]),
+               space_->first() + i);
+  const base::Comm& comm = space_->comm();
+  const auto starts_of = [&](int mine, std::vector<int>& count) {
+    count.resize(static_cast<std::size_t>(comm.size()));
+    TROCAR_MPI(MPI_Allgather(&mine, 1, MPI_INT, count.data(), 1, MPI_INT, comm.get()));
+    std::vector<int> start{0};
+    std::partial_sum(count.begin(), count.end(), std::back_inserter(start));
+    return start;
+  };
+  WholePattern whole;
+  std::vector<int> count;
+  whole.first_of_rank = starts_of(space_->owned(), count);
+  value_start_ = starts_of(9 * static_cast<int>(row.size()), value_count_);
+  const std::vector<int> start = starts_of(static_cast<int>(row.size()), count);
+  for (const auto& [mine, all] : {std::pair{&row, &whole.row}, std::pair{&column, &whole.column}}) {
+    if (comm.root()) all->resize(static_cast<std::size_t>(start.back()));
+    TROCAR_MPI(MPI_Gatherv(mine->data(), static_cast<int>(mine->size()), MPI_INT, all->data(),
+                           count.data(), start.data(), MPI_INT, 0, comm.get()));
+  }
+  for (int node = 0; node < space_->global(); ++node)
+    for (int axis = 0; axis < 3; ++axis)
+      whole.free.push_back((fixed_->axes_of_number(node) >> axis & 1U) == 0);
+  for (int node : parts.pinned) whole.pinned.push_back(space_->number_of_file(node));
+  std::sort(whole.pinned.begin(), whole.pinned.end());
+  return whole;
+}
+
+/// Every rank gets its domain.
+void SupernodalStepSolver::hand_out(Dissection& dissection)
+{
+  const base::Comm& comm = space_->comm();
+  std::vector<int> open{0}, pinned{dissection.pinned};
+  if (comm.root()) {
+    for (int rank = 1; rank < comm.size(); ++rank) {
+      Domain& domain = dissection.domain[static_cast<std::size_t>(rank)];
+      for (std::vector<int>* part : parts_of(domain)) send(*part, rank, comm.get());
+      send(std::vector<int>{domain.open}, rank, comm.get());
+    }
+    domain_ = std::move(dissection.domain.front());
+    sources_ = std::move(dissection.source);
+    top_entries_ = std::move(dissection.top_entries);
+  } else {
+    for (std::vector<int>* part : parts_of(domain_)) receive(*part, 0, comm.get());
+    receive(open, 0, comm.get());
+    domain_.open = open.front();
+  }
+  top_ = std::move(dissection.top);
+  comm.broadcast(top_);
+  comm.broadcast(pinned);
+  pinned_ = pinned.front();
+  for (std::size_t k = 0; k < top_.size(); ++k) top_index_[top_[k]] = static_cast<int>(k);
+  index_.assign(static_cast<std::size_t>(space_->owned_dofs()), -1);
+  const auto closed = domain_.dof.size() - static_cast<std::size_t>(domain_.open);
+  for (std::size_t k = 0; k < closed; ++k)
+    index_[static_cast<std::size_t>(domain_.dof[k] - 3 * space_->first())] = static_cast<int>(k);
+  for (std::size_t k = closed; k < domain_.dof.size(); ++k)
+    open_.push_back(top_index_.at(domain_.dof[k]));
+}
+
+/// Memory of all parts, and what a factorisation costs in sweeps on the rank with most to do.
+void SupernodalStepSolver::weigh()
+{
+  const double n = static_cast<double>(top_.size());
+  double bytes = factor_ ? factor_->bytes() : 0.0;
+  double flops = factor_ ? factor_->flops() : 0.0;
+  if (space_->comm().root()) {
+    bytes += 8.0 * n * n;
+    flops += n * n * n / 3.0;
+  }
+  const double worth = bytes > 0.0 ? flops / product_rate / (2.0 * bytes / read_rate) : 0.0;
+  bytes_ = space_->comm().sum(bytes);
+  sweeps_per_factor_ = space_->comm().max(std::max(least_worth, worth));
+}
+
+void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
+{
+  const base::Comm& comm = space_->comm();
+  const std::vector<double> all = gather_values(values);
+  core::MatX top = top_of(all);
+  const std::vector<double> entries = entries_for_me(all, top);
+  base::on_all(comm, [&] {
+    if (factor_) factor_->factorise(entries);
+  });
+  if (!top_.empty()) {
+    gather_open_blocks(top);
+    base::on_root(comm, [&] { top_block_.factorise(std::move(top)); });
+  }
+  forget_columns();
+  R_.clear();
+  ++ledger_->factorisations;
+}
+
+/// All blocks on rank 0.
+std::vector<double> SupernodalStepSolver::gather_values(const fem::BlockMatrix& values) const
+{
+  const base::Comm& comm = space_->comm();
+  if (comm.size() == 1) return values.values();
+  std::vector<double> all(comm.root() ? static_cast<std::size_t>(value_start_.back()) : 0);
+  TROCAR_MPI(MPI_Gatherv(values.values().data(), static_cast<int>(values.values().size()),
+                         MPI_DOUBLE, all.data(), value_count_.data(), value_start_.data(),
+                         MPI_DOUBLE, 0, comm.get()));
+  return all;
+}
+
+/// A on the top, on rank 0.
+core::MatX SupernodalStepSolver::top_of(const std::vector<double>& values) const
+{
+  if (!space_->comm().root()) return {};
+  const auto n = static_cast<Eigen::Index>(top_.size());
+  core::MatX top = core::MatX::Zero(n, n);
+  for (const Dissection::TopEntry& entry : top_entries_)
+    top(entry.row, entry.column) = top(entry.column, entry.row) = values[entry.source];
+  return top;
+}
+
+/// Rank 0 gives every rank the entries of its domain.
+std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<double>& values,
+                                                         const core::MatX& top) const
+{
+  const base::Comm& comm = space_->comm();
+  std::vector<double> entries;
+  if (!comm.root()) {
+    receive(entries, 0, comm.get());
+    return entries;
+  }
+  const core::VecX sums = top.cwiseAbs().rowwise().sum();
+  for (int rank = comm.size() - 1; rank >= 0; --rank) {  // its own ones last
+    const std::vector<long long>& source = sources_[static_cast<std::size_t>(rank)];
+    entries.resize(source.size());
+    for (std::size_t k = 0; k < source.size(); ++k) {
+      if (source[k] >= 0)
+        entries[k] = values[static_cast<std::size_t>(source[k])];
+      else
+        entries[k] = source[k] == Source::nothing
+                         ? 0.0
+                         : sums[static_cast<Eigen::Index>(Source::row_sum(0) - source[k])];
+    }
+    if (rank > 0) send(entries, rank, comm.get());
+  }
+  return entries;
+}
+
+/// Takes off the top, in the order of the ranks, what the domains take off it.
+void SupernodalStepSolver::gather_open_blocks(core::MatX& top) const
+{
+  const base::Comm& comm = space_->comm();
+  std::vector<double> mine;
+  std::vector<int> places;  // of the open dofs in the order of the factor
+  if (factor_ && domain_.open > 0) {
+    const core::MatX left = factor_->open_block();
+    mine.assign(left.data(), left.data() + left.size());
+    places.resize(open_.size());
+    for (std::size_t k = 0; k < open_.size(); ++k)
+      places[static_cast<std::size_t>(factor_->position(factor_->closed() + static_cast<int>(k)) -
+                                      factor_->closed())] = open_[k];
+  }
+  if (!comm.root()) {
+    send(places, 0, comm.get());
+    send(mine, 0, comm.get());
+    return;
+  }
+  const core::VecX sums = top.cwiseAbs().rowwise().sum();
+  for (int rank = 0; rank < comm.size(); ++rank) {
+    if (rank > 0) {
+      receive(places, rank, comm.get());
+      receive(mine, rank, comm.get());
+    }
+    const auto n = static_cast<Eigen::Index>(places.size());
+    top(places, places) += Eigen::Map<const core::MatX>(mine.data(), n, n);
+    for (int place : places) top(place, place) -= sums[place];
+  }
+}
+
+}  // namespace trocar::solve

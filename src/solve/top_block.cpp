@@ -1,0 +1,43 @@
+#include "solve/top_block.hpp"
+
+#include "base/blas.hpp"
+#include "core/failure.hpp"
+
+namespace trocar::solve {
+
+void TopBlock::factorise(core::MatX S)
+{
+  L_ = std::move(S);
+  const Eigen::LLT<Eigen::Ref<core::MatX>> factor(L_);
+  if (factor.info() != Eigen::Success)
+    throw core::solver_error(
+        "the tissue's operator is not positive definite: a body without supports (-fix), or "
+        "elements that are nearly flat");
+  forget_columns();
+}
+
+core::VecX TopBlock::forward(const core::VecX& t) const
+{
+  return L_.triangularView<Eigen::Lower>().solve(t);
+}
+
+core::VecX TopBlock::backward(const core::VecX& y) const
+{
+  return L_.triangularView<Eigen::Lower>().transpose().solve(y);
+}
+
+void TopBlock::add(const core::MatX& t)
+{
+  core::MatX columns = t;
+  base::solve_lower({L_.data(), L_.rows(), L_.cols(), Eigen::OuterStride<>(L_.rows())}, columns);
+  const Eigen::Index before = X_.cols();
+  X_.conservativeResize(L_.rows(), before + t.cols());
+  X_.rightCols(t.cols()) = columns;
+}
+
+core::MatX TopBlock::block(const std::vector<int>& slots) const
+{
+  return base::gram(X_(Eigen::all, slots));
+}
+
+}  // namespace trocar::solve
