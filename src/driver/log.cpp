@@ -20,6 +20,12 @@ bool Log::speaks() const
   return simulation_->space().comm().root() && !simulation_->scenario().output.quiet;
 }
 
+void Log::plan() const
+{
+  const double bytes = simulation_->tissue().memory_bytes();
+  if (speaks() && bytes > 0.0) std::printf("tissue solver: about %.0f MB\n", 1e-6 * bytes);
+}
+
 void Log::set_up(double seconds) const
 {
   const std::string solver = simulation_->tissue().describe_solver();

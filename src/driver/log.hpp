@@ -13,6 +13,8 @@ class Log
  public:
   explicit Log(const Simulation& simulation);
 
+  /// What the factor will take, before it does. Collective.
+  void plan() const;
   void set_up(double seconds) const;  ///< collective (solver description)
   void step(int number, const State& state, const StepReport& report);
   void note(const std::string& line) const;

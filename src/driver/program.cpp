@@ -87,9 +87,11 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   const Scenario scenario = read_scenario(options, comm);
   const core::Stopwatch watch;
   Simulation simulation(scenario, comm);
+  simulation.analyse();
+  Log log(simulation);
+  log.plan();
   simulation.prepare();
   refuse_unused();
-  Log log(simulation);
   log.set_up(watch.seconds());
   if (scenario.check_only) {
     log.note("check passed: nothing was run");

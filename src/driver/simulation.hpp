@@ -95,6 +95,8 @@ class Simulation
   /// Static equilibrium at `now.t`, with load steps when one does not do. Collective.
   StepResult equilibrium(const State& old, const core::TimeStep& now);
 
+  /// Analyses the operator: afterwards its memory is known. Collective.
+  void analyse() { tissue_.analyse(); }
   /// Factors the first operator, for -check. Collective.
   void prepare();
 

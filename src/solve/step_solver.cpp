@@ -42,11 +42,11 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
     return std::make_unique<KspStepSolver>(
         parts, ColumnSolver::blocked,
         ", because the ranks would share " + std::to_string(solver->shared_dofs()) + " dofs");
-  if (limit <= 0.0 || solver->factor_bytes() <= limit) return solver;
+  if (limit <= 0.0 || solver->memory_bytes() <= limit) return solver;
   return std::make_unique<KspStepSolver>(
       parts, ColumnSolver::blocked,
       ", because a supernodal factor would take " +
-          std::to_string(static_cast<long long>(solver->factor_bytes() / 1e6)) + " MB");
+          std::to_string(static_cast<long long>(solver->memory_bytes() / 1e6)) + " MB");
 }
 
 }  // namespace trocar::solve

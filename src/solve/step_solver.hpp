@@ -50,6 +50,8 @@ class StepSolver
   virtual double sweeps_per_factor() const { return 0.0; }
   /// Memory of a factor of our own [B], 0 when PETSc keeps it.
   virtual double factor_bytes() const { return 0.0; }
+  /// What solving will take in all, estimated from the analysis [B]; 0 when PETSc does it.
+  virtual double memory_bytes() const { return 0.0; }
   /// Dofs between the domains of the ranks, which one of them eliminates.
   virtual int shared_dofs() const { return 0; }
   /// For the log and the record.
@@ -67,7 +69,8 @@ struct StepSolverParts
   /// nothing.
   const std::vector<int>& pinned;
   bool reuse;          ///< keep columns from step to step while the operator stays
-  double most_memory;  ///< that an own factor may take [B], 0: a part of what is free
+  double most_memory;  ///< that solving ourselves may take [B], 0: a part of what is free
+  bool turns;          ///< the operator turns: a copy of the factor in single precision as well
   LinearSettings linear;
   core::Ledger& ledger;
 };

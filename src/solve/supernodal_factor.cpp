@@ -96,6 +96,16 @@ double SupernodalFactor::bytes() const
   return 8.0 * static_cast<double>(handles_->L->xsize);
 }
 
+double SupernodalFactor::all_bytes() const
+{
+  const cholmod_factor& L = *handles_->L;
+  const double index = sizeof(int);
+  const double structure = index * static_cast<double>(L.ssize + 2 * L.n + at_.size() + L.n);
+  // CHOLMOD factors a lower copy of the upper triangle it is given.
+  const double matrix = 2.0 * (8.0 + index) * static_cast<double>(handles_->A->nzmax);
+  return bytes() + 8.0 * static_cast<double>(L.maxcsize) + matrix + structure;
+}
+
 double SupernodalFactor::flops() const
 {
   return handles_->common.fl;

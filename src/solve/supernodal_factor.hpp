@@ -38,8 +38,9 @@ class SupernodalFactor
   int closed() const { return closed_; }  ///< places that are eliminated, the first ones
   /// What is left of A on the open places (open x open), by place.
   core::MatX open_block() const;
-  double bytes() const;  ///< of L [B], known from the analysis
-  double flops() const;  ///< of one factorisation
+  double bytes() const;      ///< of L [B], known from the analysis
+  double all_bytes() const;  ///< with the matrix and what factoring needs [B]
+  double flops() const;      ///< of one factorisation
 
   /// One supernode: its dense columns of L, diagonal block first, and the positions of its rows.
   struct Supernode

@@ -63,7 +63,7 @@ SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
       factor_.emplace(domain_.pattern, domain_.order, domain_.open);
   });
   domain_.pattern = {};
-  weigh();
+  weigh(parts.turns);
 }
 
 WholePattern SupernodalStepSolver::gather_pattern(const StepSolverParts& parts)
@@ -134,17 +134,22 @@ void SupernodalStepSolver::hand_out(Dissection& dissection)
 }
 
 /// Memory of all parts, and what a factorisation costs in sweeps on the rank with most to do.
-void SupernodalStepSolver::weigh()
+void SupernodalStepSolver::weigh(bool turns)
 {
   const double n = static_cast<double>(top_.size());
   double bytes = factor_ ? factor_->bytes() : 0.0;
   double flops = factor_ ? factor_->flops() : 0.0;
+  double memory = factor_ ? factor_->all_bytes() + (turns ? 0.5 * bytes : 0.0) : 0.0;
   if (space_->comm().root()) {
     bytes += 8.0 * n * n;
     flops += n * n * n / 3.0;
+    memory += 8.0 * n * n;
+    for (const std::vector<long long>& source : sources_)  // with the values sent from here
+      memory += 16.0 * static_cast<double>(source.size());
   }
   const double worth = bytes > 0.0 ? flops / product_rate / (2.0 * bytes / read_rate) : 0.0;
   bytes_ = space_->comm().sum(bytes);
+  memory_ = space_->comm().sum(memory);
   sweeps_per_factor_ = space_->comm().max(std::max(least_worth, worth));
 }
 

@@ -27,6 +27,7 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   bool turn(const std::vector<core::Mat3>& R) override;
   double sweeps_per_factor() const override { return sweeps_per_factor_; }
   double factor_bytes() const override { return bytes_; }
+  double memory_bytes() const override { return memory_; }
   int shared_dofs() const override { return static_cast<int>(top_.size()); }
   std::string describe() const override;
 
@@ -35,7 +36,7 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   void forget_columns();
   WholePattern gather_pattern(const StepSolverParts& parts);
   void hand_out(Dissection& dissection);
-  void weigh();
+  void weigh(bool turns);
   std::vector<double> gather_values(const fem::BlockMatrix& values) const;
   core::MatX top_of(const std::vector<double>& values) const;
   std::vector<double> entries_for_me(const std::vector<double>& values,
@@ -61,7 +62,7 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   const fem::Dirichlet* fixed_;
   core::Ledger* ledger_;
   bool reuse_;
-  double bytes_ = 0.0;
+  double bytes_ = 0.0, memory_ = 0.0;
   double sweeps_per_factor_ = 0.0;
   int pinned_ = 0;                                 ///< nodes put last
   std::vector<int> value_count_, value_start_;     ///< doubles of every rank's blocks

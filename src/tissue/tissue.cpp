@@ -94,12 +94,24 @@ void Tissue::assemble(const std::vector<Mat3>& R, double inverse_h)
   ++ledger_->assemblies;
 }
 
+void Tissue::analyse()
+{
+  const bool turns = settings_.model != Model::linear && settings_.lag_tolerance > 0.0;
+  Operator fresh;
+  fresh.solver = solve::make_step_solver(
+      settings_.provider,
+      {*space_, pattern_, fixed_, mesh_->x, settings_.pinned, settings_.reuse != solve::Reuse::none,
+       settings_.most_memory, turns, settings_.linear, *ledger_});
+  operators_.push_back(std::move(fresh));
+  current_ = &operators_.back();
+}
+
 void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
 {
   const double inverse_h = step.inverse();
   const bool linear = settings_.model == Model::linear;
   const auto known = std::find_if(operators_.begin(), operators_.end(), [&](const Operator& o) {
-    return !linear || o.inverse_h == inverse_h;
+    return !linear || o.inverse_h == inverse_h || o.inverse_h < 0.0;
   });
   if (known != operators_.end()) {
     current_ = &*known;
@@ -109,13 +121,7 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
     // A step length that comes back finds its factor; many of them must not fill the memory.
     constexpr std::size_t most_kept = 2;
     if (operators_.size() >= most_kept) operators_.erase(operators_.begin());
-    Operator fresh;
-    fresh.solver = solve::make_step_solver(
-        settings_.provider,
-        {*space_, pattern_, fixed_, mesh_->x, settings_.pinned,
-         settings_.reuse != solve::Reuse::none, settings_.most_memory, settings_.linear, *ledger_});
-    operators_.push_back(std::move(fresh));
-    current_ = &operators_.back();
+    analyse();
   }
   const bool same_h = current_->inverse_h == inverse_h;
   current_->inverse_h = inverse_h;

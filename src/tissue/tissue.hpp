@@ -136,6 +136,10 @@ class Tissue
   const fem::Space& space() const { return *space_; }
   std::string describe_solver() const;
   double factor_bytes() const { return current_->solver->factor_bytes(); }  ///< 0: not ours [B]
+  double memory_bytes() const { return current_->solver->memory_bytes(); }  ///< estimate, likewise
+  /// Makes the solver and its symbolic analysis, so that its memory is known before it is taken.
+  /// Collective.
+  void analyse();
   /// Builds and factors the operator of a step from rest, so that `-check` can stop. Collective.
   void prepare(const TimeStep& step);
 
