@@ -86,6 +86,19 @@ double smallest_gap(const State& state)
   return smallest;
 }
 
+/// What the step took.
+void append_work(const Simulation& simulation, const StepReport& report, double build_seconds,
+                 double seconds, std::vector<std::vector<double>>& row)
+{
+  for (double value :
+       {static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
+        static_cast<double>(report.compliance.reused), build_seconds,
+        static_cast<double>(report.passes), static_cast<double>(simulation.tissue().factor_age()),
+        report.leftover_gap, report.stale_error, static_cast<double>(report.linearisations),
+        seconds})
+    row.push_back({value});
+}
+
 std::vector<std::vector<double>> history_row(const Simulation& simulation, const State& state,
                                              const StepReport& report, double build_seconds,
                                              double seconds)
@@ -124,13 +137,7 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
                          trial.residual, trial.seconds, trial.factor_seconds})
       row.push_back({value});
   }
-  for (double value :
-       {static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
-        static_cast<double>(report.compliance.reused), build_seconds,
-        static_cast<double>(report.passes), static_cast<double>(simulation.tissue().factor_age()),
-        report.leftover_gap, report.stale_error, static_cast<double>(report.linearisations),
-        seconds})
-    row.push_back({value});
+  append_work(simulation, report, build_seconds, seconds, row);
   return row;
 }
 

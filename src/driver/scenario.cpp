@@ -5,6 +5,7 @@
 
 #include "core/csv.hpp"
 #include "core/words.hpp"
+#include "driver/compliance_options.hpp"
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
 #include "io/gmsh_reader.hpp"
@@ -221,26 +222,6 @@ OutputSettings read_output(Options& options)
   return output;
 }
 
-void read_compliance(Options& options, tissue::TissueSettings& tissue)
-{
-  const std::map<std::string, solve::Provider> providers{
-      {"auto", tissue_solver_given() ? solve::Provider::ksp : solve::Provider::automatic},
-      {"supernodal", solve::Provider::supernodal},
-      {"ksp", solve::Provider::ksp},
-      {"ksp_block", solve::Provider::ksp_block}};
-  tissue.provider = providers.at(options.text("compliance_provider"));
-  tissue.most_memory = options.real("compliance_memory");
-  const std::map<std::string, solve::Reuse> reuses{
-      {"exact", solve::Reuse::exact}, {"stale", solve::Reuse::stale}, {"none", solve::Reuse::none}};
-  tissue.stale_steps = options.integer("compliance_stale_steps");
-  tissue.reuse = reuses.at(options.text("compliance_reuse"));
-  if (tissue.reuse == solve::Reuse::stale && tissue.provider != solve::Provider::supernodal &&
-      tissue.provider != solve::Provider::automatic)
-    throw core::option_error(
-        "option -compliance_reuse stale: only the supernodal provider keeps a factor");
-  tissue.lag_tolerance = options.real("compliance_lag");
-}
-
 /// The needles, and the nodes they are planned to reach, when a factor can put these last.
 void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
 {
@@ -282,16 +263,13 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.compare = read_compare(options, scenario.laws);
   scenario.output = read_output(options);
   scenario.check_only = options.flag("check");
-  scenario.output.stale_error = options.flag("compliance_stale_error");
   const std::string file = options.text("mesh");
   if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");
   scenario.mesh = io::read_gmsh(file, options.real("mesh_scale"), comm);
   scenario.tissue = read_tissue(options, scenario.mesh, comm);
   scenario.insertion = read_insertion(options, scenario.mesh);
   refuse_dashpots_without_time(scenario);
-  read_compliance(options, scenario.tissue);
-  // The eta law is made of the compliance itself, not of what it answers.
-  if (scenario.insertion.eta > 0.0) scenario.tissue.lag_tolerance = 0.0;
+  read_compliance(options, scenario);
   add_needles(options, scenario, comm);
   options.refuse_unread();
   add_warnings(scenario);

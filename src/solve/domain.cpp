@@ -241,20 +241,22 @@ struct Builder
     std::vector<bool> is_last(home.size(), false);
     for (int node : last) is_last[at(node)] = true;
     for (int node = 0; node < whole.nodes(); ++node)
-      if (rank_of(node) == rank && !is_last[at(node)]) {
+      if (rank_of(node) == rank) {
         place[at(node)] = static_cast<int>(nodes.size());
         nodes.push_back(node);
       }
     Graph graph(nodes.size());
     for (std::size_t k = 0; k < nodes.size(); ++k)
       for (int other : neighbours[at(nodes[k])])
-        if (place[at(other)] >= 0) graph[k].push_back(place[at(other)]);
+        if (place[at(other)] >= 0 && !is_last[at(other)] && !is_last[at(nodes[k])])
+          graph[k].push_back(place[at(other)]);
     std::vector<int> order;
     const auto add_node = [&](int node) {
       for (int dof = 3 * node; dof < 3 * node + 3; ++dof)
         if (whole.free[at(dof)]) order.push_back(index[at(dof)]);
     };
-    for (int k : dissection(graph)) add_node(nodes[at(k)]);
+    for (int k : dissection(graph))
+      if (!is_last[at(nodes[at(k)])]) add_node(nodes[at(k)]);
     for (int node : last) add_node(node);
     for (int dof = static_cast<int>(order.size()); dof < static_cast<int>(domain.dof.size()); ++dof)
       order.push_back(dof);

@@ -120,8 +120,11 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
   } else {
     // A step length that comes back finds its factor; many of them must not fill the memory.
     constexpr std::size_t most_kept = 2;
-    if (operators_.size() >= most_kept) operators_.erase(operators_.begin());
-    analyse();
+    if (operators_.size() < most_kept)
+      analyse();
+    else  // the oldest one's analysis serves again
+      std::rotate(operators_.begin(), operators_.begin() + 1, operators_.end());
+    current_ = &operators_.back();
   }
   const bool same_h = current_->inverse_h == inverse_h;
   current_->inverse_h = inverse_h;

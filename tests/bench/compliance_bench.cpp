@@ -97,18 +97,40 @@ tissue::TissueSettings gel(solve::Provider provider, const std::vector<int>& pin
   return settings;
 }
 
-void time_supernodal(const Bench& bench, const test::BlockShape& shape)
+/// First operator of a body: analysis, assembly and factor, and the memory they take.
+void set_up(const Bench& bench, test::Body& body, double h)
 {
-  test::Body body(shape, gel(solve::Provider::supernodal));
-  const tissue::TissueState rest = body.tissue.at_rest();
-  double h = 0.01;
   const double before = resident_bytes("VmRSS:");
   const core::Stopwatch watch;
   body.tissue.analyse();
   body.tissue.prepare({h, h, false});
-  bench.figure("first_operator", watch.seconds(), "s");  // analysis, assembly and factor
+  bench.figure("first_operator", watch.seconds(), "s");
   bench.figure("memory_estimate", body.tissue.memory_bytes(), "B");
   bench.figure("memory_peak", resident_bytes("VmHWM:") - before, "B");
+}
+
+/// Median time of twelve new columns beside those there before [s].
+double twelve_columns(test::Body& body, const std::vector<int>& nodes)
+{
+  solve::ComplianceReport report;
+  std::vector<double> by_four;
+  for (std::size_t at = 0; at + 4 <= nodes.size(); at += 4) {
+    const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(at);
+    const core::Stopwatch four;
+    body.tissue.compliance().block({{begin, begin + 4}, {}}, report);
+    by_four.push_back(four.seconds());
+  }
+  std::nth_element(by_four.begin(),
+                   by_four.begin() + static_cast<std::ptrdiff_t>(by_four.size() / 2),
+                   by_four.end());
+  return by_four[by_four.size() / 2];
+}
+
+void time_supernodal(const Bench& bench, const test::BlockShape& shape)
+{
+  test::Body body(shape, gel(solve::Provider::supernodal));
+  double h = 0.01;
+  set_up(bench, body, h);
   bench.figure("factor_bytes", body.tissue.factor_bytes(), "B");
   const auto nodes = axis_nodes(body.mesh, shape.size);
   bench.figure("isolated_dofs", 3.0 * static_cast<double>(nodes.size()), "1");
@@ -132,17 +154,7 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
                "s");
   h *= 1.01;
   body.tissue.prepare({h, h, false});
-  std::vector<double> by_four;
-  for (std::size_t at = 0; at + 4 <= nodes.size(); at += 4) {
-    const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(at);
-    const core::Stopwatch four;
-    body.tissue.compliance().block({{begin, begin + 4}, {}}, report);
-    by_four.push_back(four.seconds());
-  }
-  std::nth_element(by_four.begin(),
-                   by_four.begin() + static_cast<std::ptrdiff_t>(by_four.size() / 2),
-                   by_four.end());
-  bench.figure("twelve_columns", by_four[by_four.size() / 2], "s");
+  bench.figure("twelve_columns", twelve_columns(body, nodes), "s");
   const solve::Probes probes{nodes, {}};
   const core::VecX f = core::VecX::Ones(probes.size());
   bench.figure("step_sweep", bench.median([&] {

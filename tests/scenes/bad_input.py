@@ -52,6 +52,11 @@ refuses("negative modulus", 64, ["-tissue_young", "-5"], {"-tissue_young": "-5"}
 refuses("Poisson's ratio of 0.5", 64, ["-tissue_poisson"], {"-tissue_poisson": "0.5"})
 refuses("NaN", 64, ["-tissue_density", "nan"], {"-tissue_density": "nan"})
 refuses("words for a number", 64, ["-time_step", "fast"], {"-time_step": "fast"})
+refuses("stale without a factor of our own", 64, ["-compliance_reuse stale", "supernodal"],
+        {"-compliance_reuse": "stale", "-compliance_provider": "ksp"})
+refuses("stale error of what is exact", 64, ["-compliance_stale_error", "-compliance_reuse stale"],
+        {"-compliance_stale_error": ""})
+refuses("negative lag", 64, ["-compliance_lag"], {"-compliance_lag": "-1"})
 refuses("unknown choice", 64, ["-constraint_solver", "did you mean 'hybrid'"],
         {"-constraint_solver": "hybird"})
 refuses("unknown option", 64, ["-needle_deph", "did you mean '-needle_depth'"], {"-needle_deph": "1"})

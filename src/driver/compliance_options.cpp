@@ -1,0 +1,36 @@
+#include "driver/compliance_options.hpp"
+
+#include <map>
+
+#include "driver/option_source.hpp"
+
+namespace trocar::driver {
+
+void read_compliance(core::Options& options, Scenario& scenario)
+{
+  tissue::TissueSettings& tissue = scenario.tissue;
+  const std::map<std::string, solve::Provider> providers{
+      {"auto", tissue_solver_given() ? solve::Provider::ksp : solve::Provider::automatic},
+      {"supernodal", solve::Provider::supernodal},
+      {"ksp", solve::Provider::ksp},
+      {"ksp_block", solve::Provider::ksp_block}};
+  tissue.provider = providers.at(options.text("compliance_provider"));
+  tissue.most_memory = options.real("compliance_memory");
+  tissue.stale_steps = options.integer("compliance_stale_steps");
+  const std::string reuse = options.text("compliance_reuse");
+  if (reuse != "exact") tissue.reuse = reuse == "stale" ? solve::Reuse::stale : solve::Reuse::none;
+  const bool ours = tissue.provider == solve::Provider::supernodal ||
+                    tissue.provider == solve::Provider::automatic;
+  if (tissue.reuse == solve::Reuse::stale && !ours)
+    throw core::option_error("option -compliance_reuse stale: needs the supernodal provider");
+  scenario.output.stale_error = options.flag("compliance_stale_error");
+  if (scenario.output.stale_error && tissue.reuse != solve::Reuse::stale)
+    throw core::option_error(
+        "option -compliance_stale_error: nothing is stale without "
+        "-compliance_reuse stale");
+  tissue.lag_tolerance = options.real("compliance_lag");
+  // The eta law is made of the compliance itself, not of what it answers.
+  if (scenario.insertion.eta > 0.0) tissue.lag_tolerance = 0.0;
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/options.hpp"
+#include "driver/scenario.hpp"
+
+namespace trocar::driver {
+
+/// Reads the -compliance_ options into the scenario's tissue; its insertion must be known by then.
+/// Failure (64) for choices that exclude each other.
+void read_compliance(core::Options& options, Scenario& scenario);
+
+}  // namespace trocar::driver
