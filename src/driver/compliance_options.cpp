@@ -29,6 +29,10 @@ void read_compliance(core::Options& options, Scenario& scenario)
         "option -compliance_stale_error: nothing is stale without "
         "-compliance_reuse stale");
   tissue.lag_tolerance = options.real("compliance_lag");
+  constexpr double least_lag = 1e-12;  // below it round-off decides
+  if (tissue.lag_tolerance > 0.0 && tissue.lag_tolerance < least_lag)
+    throw core::option_error("option -compliance_lag: round-off does not let a step come closer "
+                             "than 1e-12; 0 factors in every step");
   // The eta law is made of the compliance itself, not of what it answers.
   if (scenario.insertion.eta > 0.0) tissue.lag_tolerance = 0.0;
 }

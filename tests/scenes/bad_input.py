@@ -56,6 +56,7 @@ refuses("stale without a factor of our own", 64, ["-compliance_reuse stale", "su
         {"-compliance_reuse": "stale", "-compliance_provider": "ksp"})
 refuses("stale error of what is exact", 64, ["-compliance_stale_error", "-compliance_reuse stale"],
         {"-compliance_stale_error": ""})
+refuses("lag below round-off", 64, ["-compliance_lag", "1e-12"], {"-compliance_lag": "1e-15"})
 refuses("negative lag", 64, ["-compliance_lag"], {"-compliance_lag": "-1"})
 refuses("unknown choice", 64, ["-constraint_solver", "did you mean 'hybrid'"],
         {"-constraint_solver": "hybird"})
