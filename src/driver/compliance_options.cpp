@@ -31,10 +31,17 @@ void read_compliance(core::Options& options, Scenario& scenario)
   tissue.lag_tolerance = options.real("compliance_lag");
   constexpr double least_lag = 1e-12;  // below it round-off decides
   if (tissue.lag_tolerance > 0.0 && tissue.lag_tolerance < least_lag)
-    throw core::option_error("option -compliance_lag: round-off does not let a step come closer "
-                             "than 1e-12; 0 factors in every step");
+    throw core::option_error(
+        "option -compliance_lag: round-off does not let a step come closer "
+        "than 1e-12; 0 factors in every step");
+  if (tissue.reuse == solve::Reuse::none) tissue.lag_tolerance = 0.0;
   // The eta law is made of the compliance itself, not of what it answers.
   if (scenario.insertion.eta > 0.0) tissue.lag_tolerance = 0.0;
+  const bool turns = tissue.model == tissue::Model::corotational && tissue.lag_tolerance > 0.0;
+  if (tissue.reuse == solve::Reuse::stale && !turns)
+    throw core::option_error(
+        "option -compliance_reuse stale: columns are exact with linear tissue, "
+        "-compliance_lag 0 and -insertion_eta");
 }
 
 }  // namespace trocar::driver

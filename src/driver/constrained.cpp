@@ -48,18 +48,24 @@ void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& 
 {
   tissue::FreeMotion motion = tissue;
   if (motion.approach) tissue_.start_from(motion, last, push_of(pass, needles).forces(last));
-  do {                             // once, or until there when the factor is an older one
-    if (!pass.rows.set.empty()) {  // 4 W and g from the isolated compliance, then the laws
+  for (bool there = false; !there;) {  // once, or until there when the factor is an older one
+    if (!pass.rows.set.empty()) {      // 4 W and g from the isolated compliance, then the laws
       get_compliance(pass, report);
       core::VecX free = tissue_.at(pass.probes, motion, start);
       if (motion.pushed.size() > 0)
         free -= pass.C * constraint::probe_forces(pass.rows.set, motion.pushed);
       pass.trouble = solve_constraints(free, needles, last, pass, report);
     }
+    if (pass.trouble && motion.approach) {  // try with the factor of the operator itself
+      tissue_.give_up(motion);
+      pass.trouble.reset();
+      continue;
+    }
     if (pass.trouble) return;
     u = tissue_.finish(motion, pass.probes, more_forces(motion, pass));  // 5
     ++report.passes;
-  } while (!tissue_.there(motion, u, push_of(pass, needles), lag_tolerance(now)));
+    there = tissue_.there(motion, u, push_of(pass, needles), lag_tolerance(now));
+  }
 }
 
 // The needle paper's reuse of columns from step to step: the laws are met once, with the compliance
@@ -121,8 +127,9 @@ tissue::Push Simulation::push_of(const Pass& pass,
   push.forces = [&pass, this](const core::VecX& lambda) {
     return solve::spread(pass.probes, constraint::probe_forces(pass.rows.set, lambda), space_);
   };
-  push.yielding = [&pass, &needles](const core::VecX& a, const core::VecX& b) {
-    return constraint::yielding(pass.rows.set, small_bodies(needles), a, b);
+  push.yielding = [&pass, bodies = small_bodies(needles)](const core::VecX& a,
+                                                          const core::VecX& b) {
+    return constraint::yielding(pass.rows.set, bodies, a, b);
   };
   return push;
 }

@@ -116,6 +116,10 @@ struct Builder
     home = homes(whole, neighbours);
     result.pinned = static_cast<int>(whole.pinned.size());
     number();
+    if (static_cast<int>(result.top.size()) > whole.most_shared) {
+      for (Domain& domain : result.domain) domain = {};
+      return;
+    }
     collect();
     for (int rank = 0; rank < whole.ranks(); ++rank) finish(rank);
   }
@@ -281,8 +285,8 @@ Dissection dissect(const WholePattern& whole)
   plain.weigh();
   pinned.weigh();
   const bool worth = pinned.result.flops <= most_extra_flops * plain.result.flops;
-  const bool fits = whole.ranks() == 1 || static_cast<int>(pinned.result.top.size()) <= most_top;
-  return worth && fits ? pinned.result : plain.result;
+  const bool fits = static_cast<int>(pinned.result.top.size()) <= whole.most_shared;
+  return std::move(worth && fits ? pinned.result : plain.result);
 }
 
 }  // namespace trocar::solve

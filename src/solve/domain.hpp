@@ -6,6 +6,9 @@
 
 namespace trocar::solve {
 
+constexpr int most_top = 6000;   ///< dofs that ranks may share before others solve better
+constexpr int last_top = 30000;  ///< and beyond which they do not fit
+
 /// The blocks of the whole matrix (upper triangle, node numbers), which dofs are free, and who owns
 /// the nodes.
 struct WholePattern
@@ -14,6 +17,7 @@ struct WholePattern
   std::vector<bool> free;          ///< by dof, 3 node + axis
   std::vector<int> first_of_rank;  ///< first node of every rank, and the number of nodes
   std::vector<int> pinned;         ///< nodes to be eliminated last
+  int most_shared = most_top;      ///< dofs of the top beyond which nothing but it is wanted
 
   int ranks() const { return static_cast<int>(first_of_rank.size()) - 1; }
   int nodes() const { return first_of_rank.back(); }
@@ -55,10 +59,8 @@ struct Dissection
 };
 
 /// Shares the elimination out. The top holds the nodes with a neighbour of a higher rank. Pinned
-/// nodes join it, or with one rank are put last, unless that makes it larger than `most_top` or
-/// costs the factors more than a tenth.
+/// nodes join it, or with one rank are put last, unless that makes it larger than `most_shared` or
+/// costs the factors more than a tenth. When it is larger without them, there are no domains.
 Dissection dissect(const WholePattern& whole);
-
-constexpr int most_top = 6000;  ///< dofs that ranks may share before others solve better
 
 }  // namespace trocar::solve

@@ -33,12 +33,18 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
     return std::make_unique<KspStepSolver>(parts, ColumnSolver::one_by_one, "");
   if (provider == Provider::ksp_block)
     return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked, "");
-  auto solver = std::make_unique<SupernodalStepSolver>(parts);
-  if (provider == Provider::supernodal) return solver;
+  const bool free_to_choose = provider == Provider::automatic;
+  const int most_shared = free_to_choose ? most_top : last_top;
+  auto solver = std::make_unique<SupernodalStepSolver>(parts, most_shared);
+  const bool too_wide = solver->shared_dofs() > most_shared;
+  if (!free_to_choose && too_wide)
+    throw core::solver_error("the ranks would share " + std::to_string(solver->shared_dofs()) +
+                             " dofs: take fewer ranks, or -compliance_provider ksp");
+  if (!free_to_choose) return solver;
   const double limit = parts.most_memory > 0.0
                            ? parts.most_memory
                            : part_of_memory * parts.space.comm().max(available_memory());
-  if (solver->shared_dofs() > most_top)
+  if (too_wide)
     return std::make_unique<KspStepSolver>(
         parts, ColumnSolver::blocked,
         ", because the ranks would share " + std::to_string(solver->shared_dofs()) + " dofs");

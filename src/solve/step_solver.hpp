@@ -43,9 +43,9 @@ class StepSolver
                             const core::VecX& f) = 0;
   virtual IsolatedCompliance& compliance() = 0;
   /// The operator has become about R A Rᵀ, R the rotations of the nodes in file order: from now on
-  /// every answer is R A⁻¹ Rᵀ with the factor as it is. Empty: as factored. False when the solver
-  /// cannot.
-  virtual bool turn(const std::vector<core::Mat3>& /*R*/) { return false; }
+  /// every answer is R A⁻¹ Rᵀ with the factor as it is. Only for solvers that can.
+  virtual void turn(const std::vector<core::Mat3>& /*R*/) {}
+  virtual bool can_turn() const { return false; }
   /// About how many sweeps cost as much as a factorisation, by counts of their work.
   virtual double sweeps_per_factor() const { return 0.0; }
   /// Memory of a factor of our own [B], 0 when PETSc keeps it.

@@ -51,10 +51,11 @@ std::array<std::vector<int>*, 4> parts_of(Domain& domain)
 
 }  // namespace
 
-SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts)
+SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts, int most_shared)
     : space_(&parts.space), fixed_(&parts.fixed), ledger_(&parts.ledger), reuse_(parts.reuse)
 {
-  const WholePattern whole = gather_pattern(parts);
+  WholePattern whole = gather_pattern(parts);
+  whole.most_shared = most_shared;
   Dissection dissection;
   base::on_root(space_->comm(), [&] { dissection = dissect(whole); });
   hand_out(dissection);
@@ -139,11 +140,14 @@ void SupernodalStepSolver::weigh(bool turns)
   const double n = static_cast<double>(top_.size());
   double bytes = factor_ ? factor_->bytes() : 0.0;
   double flops = factor_ ? factor_->flops() : 0.0;
+  const double open = static_cast<double>(open_.size());
   double memory = factor_ ? factor_->all_bytes() + (turns ? 0.5 * bytes : 0.0) : 0.0;
+  memory += 24.0 * open * open;  // what is left there, its factor, and a copy to send
   if (space_->comm().root()) {
     bytes += 8.0 * n * n;
     flops += n * n * n / 3.0;
-    memory += 8.0 * n * n;
+    memory += 16.0 * n * n;  // with the share of a domain
+    if (space_->comm().size() > 1) memory += 8.0 * static_cast<double>(value_start_.back());
     for (const std::vector<long long>& source : sources_)  // with the values sent from here
       memory += 16.0 * static_cast<double>(source.size());
   }

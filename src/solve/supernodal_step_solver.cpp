@@ -16,12 +16,11 @@ void SupernodalStepSolver::forget_columns()
   slots_ = 0;
 }
 
-bool SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
+void SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
 {
   R_ = R;
   // Columns of single nodes turn with them; those of wide vectors do not.
   if (!slot_of_wide_.empty()) forget_columns();
-  return true;
 }
 
 OwnedField SupernodalStepSolver::turned_back(const OwnedField& field) const

@@ -17,14 +17,16 @@ namespace trocar::solve {
 class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
 {
  public:
-  explicit SupernodalStepSolver(const StepSolverParts& parts);
+  /// When ranks would share more than `most_shared` dofs only `shared_dofs` may be asked.
+  SupernodalStepSolver(const StepSolverParts& parts, int most_shared);
 
   void set_operator(const fem::BlockMatrix& values) override;
   HalfSolution begin(const OwnedField& b) override;
   core::VecX at(const Probes& probes, const HalfSolution& half) override;
   OwnedField finish(const HalfSolution& half, const Probes& probes, const core::VecX& f) override;
   IsolatedCompliance& compliance() override { return *this; }
-  bool turn(const std::vector<core::Mat3>& R) override;
+  void turn(const std::vector<core::Mat3>& R) override;
+  bool can_turn() const override { return true; }
   double sweeps_per_factor() const override { return sweeps_per_factor_; }
   double factor_bytes() const override { return bytes_; }
   double memory_bytes() const override { return memory_; }

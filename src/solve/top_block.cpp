@@ -9,7 +9,7 @@ void TopBlock::factorise(core::MatX S)
 {
   L_ = std::move(S);
   const Eigen::LLT<Eigen::Ref<core::MatX>> factor(L_);
-  if (factor.info() != Eigen::Success)
+  if (factor.info() != Eigen::Success || !L_.diagonal().allFinite())
     throw core::solver_error(
         "the tissue's operator is not positive definite: a body without supports (-fix), or "
         "elements that are nearly flat");

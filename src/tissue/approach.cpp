@@ -1,5 +1,7 @@
 #include "tissue/approach.hpp"
 
+#include <cmath>
+
 #include "tissue/element.hpp"
 #include "tissue/tissue.hpp"
 
@@ -94,6 +96,16 @@ FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
   return motion;
 }
 
+void Tissue::give_up(FreeMotion& motion)
+{
+  factor(current_->R);
+  const Approach& a = *motion.approach;
+  motion.base = a.u;
+  motion.pushed = a.lambda;
+  motion.half = begin(a.rest);
+  motion.approach.reset();
+}
+
 bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance)
 {
   if (!motion.approach) return true;
@@ -106,26 +118,26 @@ bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, do
   double load = a.load;
   if (rows) {
     rest.value += push.forces(more).value;
-    load += space_->norm(push.forces(push.lambda));
+    OwnedField forces = push.forces(push.lambda);
+    fixed_.clear(forces);
+    load += space_->norm(forces);
   }
   fixed_.clear(rest);
   ++a.passes;
-  if (space_->norm(rest) <= tolerance * load) {
+  const double left = space_->norm(rest);
+  const bool same_laws = space_->comm().all(push.same_laws);  // rows are solved by each rank
+  if (left <= tolerance * load) {
     current_->last_sweeps = a.passes;
     current_->sweeps += a.passes;
-    ++current_->uses;
     return true;
   }
-  if (a.passes >= most_passes + current_->solver->sweeps_per_factor()) {
-    factor(current_->R);
-    motion.base = u;
-    motion.pushed = push.lambda;
-    motion.half = begin(rest);
-    motion.approach.reset();
+  const bool leads_on = a.passes < most_passes + current_->solver->sweeps_per_factor();
+  if (!leads_on || !std::isfinite(left)) {
+    give_up(motion);
     return false;
   }
-  if (rows && !(push.same_laws && a.on_rows))
-    change_rows(a, d, A_d, more, push);
+  if (rows && !(same_laws && a.on_rows))
+    change_rows(a, d, A_d, more, push, same_laws);
   else
     advance(a, std::move(d), std::move(A_d), std::move(more), push);
   motion.base = a.u;
@@ -138,11 +150,11 @@ bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, do
 /// metric of P: it falls along d at least up to (dᵀPd)/(dᵀAd). The first step is a whole one, to
 /// get on the bilateral rows.
 void Tissue::change_rows(Approach& a, const OwnedField& d, const OwnedField& A_d,
-                         const core::VecX& more, const Push& push) const
+                         const core::VecX& more, const Push& push, bool same_laws) const
 {
   const OwnedField pushed = push.forces(more);
   double step = 1.0;
-  if (a.passes > 1 && !push.same_laws) {
+  if (a.passes > 1 && !same_laws) {
     const double others = push.yielding(more, more);
     const double P = space_->dot(d, {a.rest.value + pushed.value}) + others;
     const double A = space_->dot(d, A_d) + others;

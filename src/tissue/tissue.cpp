@@ -72,7 +72,10 @@ bool Tissue::rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const
     const std::size_t count = std::min(width, elements_.size() - first);
     deformation_gradients(u, first, count, batch.matrix());
     upright = upright && (batch.determinant() > 0.0).all();
-    if (!upright) break;
+    if (!upright) {
+      std::fill(R.begin() + static_cast<std::ptrdiff_t>(first), R.end(), Mat3::Identity());
+      break;
+    }
     batch.rotate();
     for (std::size_t lane = 0; lane < count; ++lane)
       R[first + lane] = batch.get(static_cast<int>(lane));
@@ -102,6 +105,9 @@ void Tissue::analyse()
       settings_.provider,
       {*space_, pattern_, fixed_, mesh_->x, settings_.pinned, settings_.reuse != solve::Reuse::none,
        settings_.most_memory, turns, settings_.linear, *ledger_});
+  if (settings_.reuse == solve::Reuse::stale && !fresh.solver->can_turn())
+    throw core::solver_error("stale reuse keeps a factor, but the tissue solver is " +
+                             fresh.solver->describe());
   operators_.push_back(std::move(fresh));
   current_ = &operators_.back();
 }
@@ -116,7 +122,11 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
   if (known != operators_.end()) {
     current_ = &*known;
     const bool same = current_->inverse_h == inverse_h && (linear || current_->R == R);
-    if (space_->comm().all(same)) return;
+    if (space_->comm().all(same)) {
+      ++current_->uses;
+      if (!current_->older) current_->sweeps += current_->last_sweeps = 1.0;
+      return;
+    }
   } else {
     // A step length that comes back finds its factor; many of them must not fill the memory.
     constexpr std::size_t most_kept = 2;
@@ -130,12 +140,15 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
   current_->inverse_h = inverse_h;
   if (!linear) current_->R = R;
   assemble(R, inverse_h);
-  const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && !current_->R_factor.empty();
-  if (may_lag && space_->comm().all(same_h) && !factor_worn())
-    current_->older = current_->solver->turn(turned_nodes(R, current_->R_factor));
-  else
-    current_->older = false;
-  if (!current_->older) factor(R);
+  const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && current_->uses > 0 &&
+                       current_->solver->can_turn();
+  if (may_lag && space_->comm().all(same_h) && !factor_worn()) {
+    current_->solver->turn(turned_nodes(R, current_->R_factor));
+    current_->older = true;
+    ++current_->uses;
+  } else {
+    factor(R);
+  }
 }
 
 OwnedField Tissue::external(const TimeStep& step) const

@@ -4,7 +4,7 @@ import os
 import h5py
 import numpy as np
 
-from harness import check, completed, finish, histories, options, small_block
+from harness import check, completed, finish, histories, options, small_block, structured
 
 gel = options("gel_insertion.opts")
 gel.update({"-time_end": "6", "-output_every": "50", "-output_fields": "displacement,velocity"})
@@ -24,7 +24,12 @@ steering.update({"-time_end": "2", "-output_every": "10"})
 # What a step of turning tissue took, not what it found.
 work = {"compliance/new_probes", "compliance/reused_probes", "compliance/passes",
         "compliance/factor_age", "constraint/iterations"}
+# Five tets: some ranks have none.
+tiny = options("small_insertion.opts")
+tiny.update({"-mesh": structured("five_tets", *"--nodes 2 2 2 --size 0.06 0.04 0.04 --split 5".split()),
+             "-tissue_model": "corotational", "-time_end": "1", "-output_every": "50"})
 for name, settings, tolerance in [
+    ("five tets", tiny, 1e-8),
     ("no ties (gel)", gel, 1e-8), ("ties", ties, 1e-8), ("tip exactly on vertices", exact, 1e-8),
     ("path in a face plane", plane, 1e-8), ("puncture in layers", layers, 1e-8),
     ("bevel", steering, 1e-8), ("iterative solver", iterative, 1e-6)]:
