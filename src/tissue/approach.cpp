@@ -7,33 +7,6 @@
 
 namespace trocar::tissue {
 
-/// Rotations of the nodes since the factor was made, in file order: of the volume-weighted mean of
-/// the tets around each. Nodes with a fixed axis do not turn: the supports do not turn with them.
-std::vector<Mat3> Tissue::turned_nodes(const std::vector<Mat3>& R,
-                                       const std::vector<Mat3>& R_factor) const
-{
-  std::vector<Mat3> sum(static_cast<std::size_t>(space_->local()), Mat3::Zero());
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Mat3 turn = elements_[e].shape.volume * R[e] * R_factor[e].transpose();
-    for (int node : space_->tets()[e].nodes) sum[static_cast<std::size_t>(node)] += turn;
-  }
-  std::array<OwnedField, 3> column{space_->zero(), space_->zero(), space_->zero()};
-  for (int local = 0; local < space_->owned(); ++local) {
-    const bool held = fixed_.axes_of_number(space_->first() + local) != 0;
-    const Mat3& mean = sum[static_cast<std::size_t>(local)];
-    const bool turns = !held && mean.determinant() > 0.0;
-    const Mat3 turn = turns ? core::polar_rotation(mean) : Mat3::Identity();
-    for (int a = 0; a < 3; ++a) column[static_cast<std::size_t>(a)].node(local) = turn.col(a);
-  }
-  std::vector<Mat3> turned(static_cast<std::size_t>(space_->global()));
-  for (int a = 0; a < 3; ++a) {
-    const fem::GlobalField all = space_->gather(column[static_cast<std::size_t>(a)]);
-    for (int node = 0; node < space_->global(); ++node)
-      turned[static_cast<std::size_t>(node)].col(a) = all.node(node);
-  }
-  return turned;
-}
-
 /// A factor is made anew when the last linearisation took more sweeps than one does on average when
 /// the factor's cost is shared by all that used it: from there on its share no longer falls.
 bool Tissue::factor_worn() const

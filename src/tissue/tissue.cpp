@@ -33,56 +33,6 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
         traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
 }
 
-/// F of `count` elements, one per lane; the last one fills the rest.
-void Tissue::deformation_gradients(const fem::GhostedField& u, std::size_t first, std::size_t count,
-                                   core::PolarBatch::Matrix& F) const
-{
-  constexpr int width = core::PolarBatch::width;
-  std::array<core::PolarBatch::Lanes, 12> nodal, gradient;
-  for (int lane = 0; lane < width; ++lane) {
-    const std::size_t e = first + std::min(static_cast<std::size_t>(lane), count - 1);
-    const double* g = elements_[e].shape.gradient.data();
-    for (std::size_t a = 0; a < 4; ++a) {
-      const double* w = u.value.data() + 3 * space_->tets()[e].nodes[a];
-      for (std::size_t i = 0; i < 3; ++i) {
-        nodal[3 * a + i][lane] = w[i];
-        gradient[3 * a + i][lane] = g[3 * a + i];
-      }
-    }
-  }
-  for (std::size_t j = 0; j < 3; ++j)
-    for (std::size_t i = 0; i < 3; ++i) {
-      core::PolarBatch::Lanes sum = core::PolarBatch::Lanes::Constant(i == j ? 1.0 : 0.0);
-      for (std::size_t a = 0; a < 4; ++a) sum += nodal[3 * a + i] * gradient[3 * a + j];
-      F[3 * j + i] = sum;
-    }
-}
-
-bool Tissue::rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const
-{
-  if (settings_.model == Model::linear) {
-    if (R.size() != elements_.size()) R.assign(elements_.size(), Mat3::Identity());
-    return true;
-  }
-  R.resize(elements_.size());
-  bool upright = true;
-  constexpr std::size_t width = core::PolarBatch::width;
-  core::PolarBatch batch;
-  for (std::size_t first = 0; first < elements_.size(); first += width) {
-    const std::size_t count = std::min(width, elements_.size() - first);
-    deformation_gradients(u, first, count, batch.matrix());
-    upright = upright && (batch.determinant() > 0.0).all();
-    if (!upright) {
-      std::fill(R.begin() + static_cast<std::ptrdiff_t>(first), R.end(), Mat3::Identity());
-      break;
-    }
-    batch.rotate();
-    for (std::size_t lane = 0; lane < count; ++lane)
-      R[first + lane] = batch.get(static_cast<int>(lane));
-  }
-  return space_->comm().all(upright);
-}
-
 void Tissue::assemble(const std::vector<Mat3>& R, double inverse_h)
 {
   values_.set_zero();

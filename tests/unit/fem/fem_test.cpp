@@ -15,6 +15,26 @@ fem::ElementBlocks blocks_of(const test::Body& body, std::size_t e, const core::
                                  1e3, false, 0);
 }
 
+void expect_equal_products(const test::Body& body, const fem::BlockMatrix& direct, Mat A)
+{
+  base::VecHandle x, y;
+  TROCAR_PETSC(MatCreateVecs(A, x.out(), y.out()));
+  fem::OwnedField field = body.space.zero();
+  for (int k = 0; k < body.space.owned_dofs(); ++k)
+    field.value[k] = std::sin(3.0 * body.space.first() + k);
+  double* data = nullptr;
+  TROCAR_PETSC(VecGetArray(x.get(), &data));
+  std::copy_n(field.value.data(), field.value.size(), data);
+  TROCAR_PETSC(VecRestoreArray(x.get(), &data));
+  TROCAR_PETSC(MatMult(A, x.get(), y.get()));
+  const double* product = nullptr;
+  TROCAR_PETSC(VecGetArrayRead(y.get(), &product));
+  const core::VecX theirs = Eigen::Map<const core::VecX>(product, body.space.owned_dofs());
+  TROCAR_PETSC(VecRestoreArrayRead(y.get(), &product));
+  const fem::OwnedField mine = direct.times(body.space, field);
+  EXPECT_LT(body.space.norm({mine.value - theirs}), 1e-13 * body.space.norm(mine));
+}
+
 TEST(Space, EveryNodeHasOneOwnerAndGhostsArrive)
 {
   const test::Body body(distorted);
@@ -94,22 +114,7 @@ TEST(BlockMatrix, EqualsMatSetValues)
         }
   EXPECT_LT(difference, 1e-13 * body.comm.max(largest));
 
-  base::VecHandle x, y;
-  TROCAR_PETSC(MatCreateVecs(A, x.out(), y.out()));
-  fem::OwnedField field = body.space.zero();
-  for (int k = 0; k < body.space.owned_dofs(); ++k)
-    field.value[k] = std::sin(3.0 * body.space.first() + k);
-  double* data = nullptr;
-  TROCAR_PETSC(VecGetArray(x.get(), &data));
-  std::copy_n(field.value.data(), field.value.size(), data);
-  TROCAR_PETSC(VecRestoreArray(x.get(), &data));
-  TROCAR_PETSC(MatMult(A, x.get(), y.get()));
-  const double* product = nullptr;
-  TROCAR_PETSC(VecGetArrayRead(y.get(), &product));
-  const core::VecX theirs = Eigen::Map<const core::VecX>(product, body.space.owned_dofs());
-  TROCAR_PETSC(VecRestoreArrayRead(y.get(), &product));
-  const fem::OwnedField mine = direct.times(body.space, field);
-  EXPECT_LT(body.space.norm({mine.value - theirs}), 1e-13 * body.space.norm(mine));
+  expect_equal_products(body, direct, A);
 }
 
 TEST(Element, BlocksEqualTheTextbookStrainMatrix)
