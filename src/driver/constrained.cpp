@@ -5,18 +5,6 @@
 
 // 3 to 5 of the step: rows, the dense problem, the correction.
 namespace trocar::driver {
-namespace {
-
-std::vector<constraint::SmallBody> small_bodies(const std::vector<needle::Linearised>& needles)
-{
-  std::vector<constraint::SmallBody> bodies;
-  for (const needle::Linearised& needle : needles)
-    bodies.push_back({needle.held, needle.factor, needle.free_increment});
-  return bodies;
-}
-
-}  // namespace
-
 Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
                                               const tissue::FreeMotion& tissue, State& next,
                                               core::VecX& last, StepReport& report)
@@ -25,6 +13,8 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
   std::vector<needle::Linearised> needles;
   for (std::size_t i = 0; i < needles_.size(); ++i)
     needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
+  for (const needle::Linearised& needle : needles)
+    pass.needles.push_back({needle.held, needle.factor, needle.free_increment});
   pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
   pass.probes.nodes = pass.rows.set.probed_nodes();
   const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
@@ -32,9 +22,9 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
   const bool stale =
       scenario_.tissue.reuse == solve::Reuse::stale && tissue.approach && !pass.rows.set.empty();
   if (!stale || scenario_.output.stale_error)
-    meet_laws(now, tissue, start, needles, last, pass, next.tissue.u, report);
+    meet_laws(now, tissue, start, last, pass, next.tissue.u, report);
   if (stale && !pass.trouble)
-    meet_stale_laws(now, tissue, start, needles, last, pass, next.tissue.u, report);
+    meet_stale_laws(now, tissue, start, last, pass, next.tissue.u, report);
   if (pass.trouble) return pass;
   last = pass.lambda.lambda;
   correct(old, now, needles, pass, next, report);
@@ -42,19 +32,19 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
 }
 
 void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                           const fem::OwnedField& start,
-                           const std::vector<needle::Linearised>& needles, const core::VecX& last,
-                           Pass& pass, fem::OwnedField& u, StepReport& report)
+                           const fem::OwnedField& start, const core::VecX& last, Pass& pass,
+                           fem::OwnedField& u, StepReport& report)
 {
   tissue::FreeMotion motion = tissue;
-  if (motion.approach) tissue_.start_from(motion, last, push_of(pass, needles).forces(last));
-  for (bool there = false; !there;) {  // once, or until there when the factor is an older one
-    if (!pass.rows.set.empty()) {      // 4 W and g from the isolated compliance, then the laws
+  if (motion.approach) tissue_.start_from(motion, last, push_of(pass).forces(last));
+  for (bool converged = false;
+       !converged;) {              // once, or more often when the factor is an older one
+    if (!pass.rows.set.empty()) {  // 4 W and g from the isolated compliance, then the laws
       get_compliance(pass, report);
       core::VecX free = tissue_.at(pass.probes, motion, start);
       if (motion.pushed.size() > 0)
         free -= pass.C * constraint::probe_forces(pass.rows.set, motion.pushed);
-      pass.trouble = solve_constraints(free, needles, last, pass, report);
+      pass.trouble = solve_constraints(free, last, pass, report);
     }
     if (pass.trouble && motion.approach) {  // try with the factor of the operator itself
       tissue_.give_up(motion);
@@ -64,24 +54,22 @@ void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& 
     if (pass.trouble) return;
     u = tissue_.finish(motion, pass.probes, more_forces(motion, pass));  // 5
     ++report.passes;
-    there = tissue_.there(motion, u, push_of(pass, needles), lag_tolerance(now));
+    converged = !motion.approach || tissue_.converged(motion, u, push_of(pass), lag_tolerance(now));
   }
 }
 
 // The needle paper's reuse of columns from step to step: the laws are met once, with the compliance
 // of an older operator; the tissue obeys the present one. What the gaps are off is reported.
 void Simulation::meet_stale_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                                 const fem::OwnedField& start,
-                                 const std::vector<needle::Linearised>& needles,
-                                 const core::VecX& last, Pass& pass, fem::OwnedField& u,
-                                 StepReport& report)
+                                 const fem::OwnedField& start, const core::VecX& last, Pass& pass,
+                                 fem::OwnedField& u, StepReport& report)
 {
   const fem::OwnedField exact = u;
   const auto alone = [&](tissue::FreeMotion motion) {
     do {
       u = tissue_.finish(motion, {}, {});
       ++report.passes;
-    } while (!tissue_.there(motion, u, {}, lag_tolerance(now)));
+    } while (!tissue_.converged(motion, u, {}, lag_tolerance(now)));
   };
   tissue::FreeMotion motion = tissue;
   tissue_.start_from(motion, {}, space_.zero());
@@ -89,9 +77,9 @@ void Simulation::meet_stale_laws(const core::TimeStep& now, const tissue::FreeMo
   get_compliance(pass, report);
   pass.lambda = {};
   const core::VecX free = solve::read(pass.probes, {u.value - start.value}, space_);
-  pass.trouble = solve_constraints(free, needles, last, pass, report);
+  pass.trouble = solve_constraints(free, last, pass, report);
   if (pass.trouble) return;
-  alone(tissue_.pushed(u, push_of(pass, needles).forces(pass.lambda.lambda)));
+  alone(tissue_.pushed(u, push_of(pass).forces(pass.lambda.lambda)));
   const core::VecX moved = solve::read(pass.probes, {u.value - start.value}, space_);
   const core::VecX thought = free + pass.C * pass.forces;
   const core::VecX off = constraint::row_displacements(pass.rows.set, moved - thought);
@@ -118,8 +106,7 @@ core::VecX Simulation::more_forces(const tissue::FreeMotion& motion, const Pass&
   return pass.forces - constraint::probe_forces(pass.rows.set, motion.pushed);
 }
 
-tissue::Push Simulation::push_of(const Pass& pass,
-                                 const std::vector<needle::Linearised>& needles) const
+tissue::Push Simulation::push_of(const Pass& pass) const
 {
   tissue::Push push;
   push.lambda = pass.lambda.lambda;
@@ -127,9 +114,8 @@ tissue::Push Simulation::push_of(const Pass& pass,
   push.forces = [&pass, this](const core::VecX& lambda) {
     return solve::spread(pass.probes, constraint::probe_forces(pass.rows.set, lambda), space_);
   };
-  push.yielding = [&pass, bodies = small_bodies(needles)](const core::VecX& a,
-                                                          const core::VecX& b) {
-    return constraint::yielding(pass.rows.set, bodies, a, b);
+  push.yielding = [&pass](const core::VecX& a, const core::VecX& b) {
+    return constraint::yielding(pass.rows.set, pass.needles, a, b);
   };
   return push;
 }
@@ -142,12 +128,12 @@ double Simulation::lag_tolerance(const core::TimeStep& now) const
   return std::max(scenario_.tissue.lag_tolerance, iterated ? leads_on : 0.0);
 }
 
-std::optional<std::string> Simulation::solve_constraints(
-    const core::VecX& free, const std::vector<needle::Linearised>& needles, const core::VecX& start,
-    Pass& pass, StepReport& report)
+std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
+                                                         const core::VecX& start, Pass& pass,
+                                                         StepReport& report)
 {
   const constraint::Set& set = pass.rows.set;
-  law::Problem problem = constraint::reduce(set, pass.C, free, small_bodies(needles));
+  law::Problem problem = constraint::reduce(set, pass.C, free, pass.needles);
   const law::Multipliers last = std::move(pass.lambda);
   problem.start = last.converged ? last.lambda : start;
   pass.lambda = law::solve(problem, scenario_.laws);

@@ -125,13 +125,14 @@ class Simulation
     Rows rows;
     std::optional<std::string> trouble;  ///< why the step cannot be taken; agreed by all ranks
     law::Multipliers lambda;
-    bool same_laws = false;          ///< every row holds or slips as in the pass before
-    core::MatX C;                    ///< isolated compliance of the probes [m/N]
-    int factor_version = 0;          ///< of the factor that C belongs to
-    core::VecX mobility;             ///< W_ii, 0 on rows that nothing can move [m/N]
-    solve::Probes probes;            ///< tissue nodes that the rows hold
-    core::VecX forces;               ///< Ĥᵀλ on them [N]
-    std::vector<core::VecX> levers;  ///< H_nᵀλ on each needle
+    bool same_laws = false;                      ///< every row holds or slips as in the pass before
+    std::vector<constraint::SmallBody> needles;  ///< as the rows feel them
+    core::MatX C;                                ///< isolated compliance of the probes [m/N]
+    int factor_version = 0;                      ///< of the factor that C belongs to
+    core::VecX mobility;                         ///< W_ii, 0 on rows that nothing can move [m/N]
+    solve::Probes probes;                        ///< tissue nodes that the rows hold
+    core::VecX forces;                           ///< Ĥᵀλ on them [N]
+    std::vector<core::VecX> levers;              ///< H_nᵀλ on each needle
   };
 
   Pass linearised_step(const State& old, const core::TimeStep& now, State& next, core::VecX& last,
@@ -143,21 +144,19 @@ class Simulation
   std::optional<std::string> move_needles(const State& old, State& next) const;
   Rows coupling_rows(const core::TimeStep& now, const State& state) const;
   void meet_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                 const fem::OwnedField& start, const std::vector<needle::Linearised>& needles,
-                 const core::VecX& last, Pass& pass, fem::OwnedField& u, StepReport& report);
+                 const fem::OwnedField& start, const core::VecX& last, Pass& pass,
+                 fem::OwnedField& u, StepReport& report);
   void meet_stale_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                       const fem::OwnedField& start, const std::vector<needle::Linearised>& needles,
-                       const core::VecX& last, Pass& pass, fem::OwnedField& u, StepReport& report);
+                       const fem::OwnedField& start, const core::VecX& last, Pass& pass,
+                       fem::OwnedField& u, StepReport& report);
   void get_compliance(Pass& pass, StepReport& report);
-  std::optional<std::string> solve_constraints(const core::VecX& free,
-                                               const std::vector<needle::Linearised>& needles,
-                                               const core::VecX& start, Pass& pass,
-                                               StepReport& report);
+  std::optional<std::string> solve_constraints(const core::VecX& free, const core::VecX& start,
+                                               Pass& pass, StepReport& report);
   void correct(const State& old, const core::TimeStep& now,
                const std::vector<needle::Linearised>& needles, const Pass& pass, State& next,
                StepReport& report);
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
-  tissue::Push push_of(const Pass& pass, const std::vector<needle::Linearised>& needles) const;
+  tissue::Push push_of(const Pass& pass) const;
   double lag_tolerance(const core::TimeStep& now) const;
   bool balanced(const State& old, const State& next, const core::TimeStep& now, const Pass& pass,
                 double& residual) const;

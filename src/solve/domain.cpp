@@ -12,7 +12,7 @@ namespace trocar::solve {
 namespace {
 
 constexpr double most_extra_flops = 1.1;  ///< what pinning may cost the factors
-constexpr int in_top = -1;
+constexpr int in_interface = -1;
 
 using Graph = std::vector<std::vector<int>>;  ///< neighbours of every node
 
@@ -82,7 +82,7 @@ Graph graph_of(const WholePattern& whole)
   return neighbours;
 }
 
-/// Rank in whose domain a node lies, or `in_top`.
+/// Rank in whose domain a node lies, or `in_interface`.
 std::vector<int> homes(const WholePattern& whole, const Graph& neighbours)
 {
   std::vector<int> home(at(whole.nodes()));
@@ -90,23 +90,24 @@ std::vector<int> homes(const WholePattern& whole, const Graph& neighbours)
     const int mine = whole.owner(node);
     const bool border = std::any_of(neighbours[at(node)].begin(), neighbours[at(node)].end(),
                                     [&](int other) { return whole.owner(other) > mine; });
-    home[at(node)] = border ? in_top : mine;
+    home[at(node)] = border ? in_interface : mine;
   }
   if (whole.ranks() > 1)
-    for (int node : whole.pinned) home[at(node)] = in_top;
+    for (int node : whole.pinned) home[at(node)] = in_interface;
   return home;
 }
 
-/// Numbers of dofs within the domains and in the top, and the entries of each domain.
+/// Numbers of dofs within the domains and in the interface, and the entries of each domain.
 struct Builder
 {
   const WholePattern& whole;
   const Graph neighbours;
   Dissection result;
-  std::vector<int> home;                     ///< by node
-  std::vector<int> index;                    ///< by whole dof: in its domain, or in the top
-  std::vector<std::vector<int>> open_index;  ///< by rank and top dof: dof of the domain, or -1
-  std::vector<std::vector<Entry>> entries;   ///< by rank
+  std::vector<int> home;   ///< by node
+  std::vector<int> index;  ///< by whole dof: in its domain, or in the interface
+  std::vector<std::vector<int>>
+      open_index;                           ///< by rank and interface dof: dof of the domain, or -1
+  std::vector<std::vector<Entry>> entries;  ///< by rank
 
   explicit Builder(const WholePattern& w)
       : whole(w), neighbours(graph_of(w)), index(w.free.size(), -1), entries(at(w.ranks()))
@@ -116,7 +117,7 @@ struct Builder
     home = homes(whole, neighbours);
     result.pinned = static_cast<int>(whole.pinned.size());
     number();
-    if (static_cast<int>(result.top.size()) > whole.most_shared) {
+    if (static_cast<int>(result.interface.size()) > whole.most_shared) {
       for (Domain& domain : result.domain) domain = {};
       return;
     }
@@ -127,7 +128,7 @@ struct Builder
   /// Counts the work, to compare ways to share it.
   void weigh()
   {
-    result.flops = std::pow(static_cast<double>(result.top.size()), 3) / 3.0;
+    result.flops = std::pow(static_cast<double>(result.interface.size()), 3) / 3.0;
     for (const Domain& domain : result.domain)
       if (domain.pattern.size() > domain.open)
         result.flops += SupernodalFactor(domain.pattern, domain.order, domain.open).flops();
@@ -141,15 +142,15 @@ struct Builder
       for (int dof = 3 * node; dof < 3 * node + 3; ++dof) {
         if (!whole.free[at(dof)]) continue;
         std::vector<int>& list =
-            rank_of(node) == in_top ? result.top : result.domain[at(rank_of(node))].dof;
+            rank_of(node) == in_interface ? result.interface : result.domain[at(rank_of(node))].dof;
         index[at(dof)] = static_cast<int>(list.size());
         list.push_back(dof);
       }
-    open_index.assign(at(whole.ranks()), std::vector<int>(result.top.size(), -1));
+    open_index.assign(at(whole.ranks()), std::vector<int>(result.interface.size(), -1));
     for (int rank = 0; rank < whole.ranks(); ++rank) open_up(rank);
   }
 
-  /// Adds the dofs of the top that a domain touches.
+  /// Adds the dofs of the interface that a domain touches.
   void open_up(int rank)
   {
     Domain& domain = result.domain[at(rank)];
@@ -157,7 +158,7 @@ struct Builder
     for (int node = 0; node < whole.nodes(); ++node)
       if (rank_of(node) == rank)
         for (int other : neighbours[at(node)])
-          if (rank_of(other) == in_top) touched.push_back(other);
+          if (rank_of(other) == in_interface) touched.push_back(other);
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     for (int node : touched)
@@ -182,13 +183,13 @@ struct Builder
   {
     if (!whole.free[at(r)] || !whole.free[at(c)]) return;
     const int from = rank_of(r / 3), to = rank_of(c / 3);
-    if (from == in_top && to == in_top) {
-      result.top_entries.push_back({index[at(r)], index[at(c)], source});
+    if (from == in_interface && to == in_interface) {
+      result.interface_entries.push_back({index[at(r)], index[at(c)], source});
       return;
     }
     const int rank = std::max(from, to);
     const auto local = [&](int dof, int owner) {
-      return owner == in_top ? open_index[at(rank)][at(index[at(dof)])] : index[at(dof)];
+      return owner == in_interface ? open_index[at(rank)][at(index[at(dof)])] : index[at(dof)];
     };
     const int i = local(r, from), j = local(c, to);
     entries[at(rank)].push_back({std::max(i, j), std::min(i, j), static_cast<long long>(source)});
@@ -224,7 +225,7 @@ struct Builder
         for (int dof = 3 * node; dof < 3 * node + 3; ++dof)
           if (whole.free[at(dof)]) free_dof = index[at(dof)];
         for (int other : neighbours[at(node)]) {
-          tied = tied || rank_of(other) == in_top;
+          tied = tied || rank_of(other) == in_interface;
           if (rank_of(other) != rank || seen[at(other)]) continue;
           seen[at(other)] = true;
           stack.push_back(other);
@@ -285,7 +286,7 @@ Dissection dissect(const WholePattern& whole)
   plain.weigh();
   pinned.weigh();
   const bool worth = pinned.result.flops <= most_extra_flops * plain.result.flops;
-  const bool fits = static_cast<int>(pinned.result.top.size()) <= whole.most_shared;
+  const bool fits = static_cast<int>(pinned.result.interface.size()) <= whole.most_shared;
   return std::move(worth && fits ? pinned.result : plain.result);
 }
 

@@ -34,7 +34,7 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
   if (provider == Provider::ksp_block)
     return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked, "");
   const bool free_to_choose = provider == Provider::automatic;
-  const int most_shared = free_to_choose ? most_top : last_top;
+  const int most_shared = free_to_choose ? most_interface : last_interface;
   auto solver = std::make_unique<SupernodalStepSolver>(parts, most_shared);
   const bool too_wide = solver->shared_dofs() > most_shared;
   if (!free_to_choose && too_wide)

@@ -21,7 +21,8 @@ enum class Provider {
 struct HalfSolution
 {
   core::VecX value{};
-  core::VecX top{};  ///< on rank 0: the same on dofs that ranks share
+  core::VecX interface {
+  };  ///< on rank 0: the same on dofs that ranks share
 };
 
 /// One operator of the tissue in the order of a step: solve b, read the answer at the probes, get

@@ -58,12 +58,11 @@ SupernodalStepSolver::SupernodalStepSolver(const StepSolverParts& parts, int mos
   whole.most_shared = most_shared;
   Dissection dissection;
   base::on_root(space_->comm(), [&] { dissection = dissect(whole); });
-  hand_out(dissection);
+  const Domain domain = hand_out(dissection);
   base::on_all(space_->comm(), [&] {
-    if (domain_.pattern.size() > domain_.open)
-      factor_.emplace(domain_.pattern, domain_.order, domain_.open);
+    if (domain.pattern.size() > domain.open)
+      factor_.emplace(domain.pattern, domain.order, domain.open);
   });
-  domain_.pattern = {};
   weigh(parts.turns);
 }
 
@@ -103,41 +102,44 @@ WholePattern SupernodalStepSolver::gather_pattern(const StepSolverParts& parts)
 }
 
 /// Every rank gets its domain.
-void SupernodalStepSolver::hand_out(Dissection& dissection)
+Domain SupernodalStepSolver::hand_out(Dissection& dissection)
 {
   const base::Comm& comm = space_->comm();
+  Domain domain;
   std::vector<int> open{0}, pinned{dissection.pinned};
   if (comm.root()) {
     for (int rank = 1; rank < comm.size(); ++rank) {
-      Domain& domain = dissection.domain[static_cast<std::size_t>(rank)];
-      for (std::vector<int>* part : parts_of(domain)) send(*part, rank, comm.get());
-      send(std::vector<int>{domain.open}, rank, comm.get());
+      Domain& other = dissection.domain[static_cast<std::size_t>(rank)];
+      for (std::vector<int>* part : parts_of(other)) send(*part, rank, comm.get());
+      send(std::vector<int>{other.open}, rank, comm.get());
     }
-    domain_ = std::move(dissection.domain.front());
+    domain = std::move(dissection.domain.front());
     sources_ = std::move(dissection.source);
-    top_entries_ = std::move(dissection.top_entries);
+    interface_entries_ = std::move(dissection.interface_entries);
   } else {
-    for (std::vector<int>* part : parts_of(domain_)) receive(*part, 0, comm.get());
+    for (std::vector<int>* part : parts_of(domain)) receive(*part, 0, comm.get());
     receive(open, 0, comm.get());
-    domain_.open = open.front();
+    domain.open = open.front();
   }
-  top_ = std::move(dissection.top);
-  comm.broadcast(top_);
+  interface_ = std::move(dissection.interface);
+  comm.broadcast(interface_);
   comm.broadcast(pinned);
   pinned_ = pinned.front();
-  for (std::size_t k = 0; k < top_.size(); ++k) top_index_[top_[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < interface_.size(); ++k)
+    interface_index_[interface_[k]] = static_cast<int>(k);
   index_.assign(static_cast<std::size_t>(space_->owned_dofs()), -1);
-  const auto closed = domain_.dof.size() - static_cast<std::size_t>(domain_.open);
+  const auto closed = domain.dof.size() - static_cast<std::size_t>(domain.open);
   for (std::size_t k = 0; k < closed; ++k)
-    index_[static_cast<std::size_t>(domain_.dof[k] - 3 * space_->first())] = static_cast<int>(k);
-  for (std::size_t k = closed; k < domain_.dof.size(); ++k)
-    open_.push_back(top_index_.at(domain_.dof[k]));
+    index_[static_cast<std::size_t>(domain.dof[k] - 3 * space_->first())] = static_cast<int>(k);
+  for (std::size_t k = closed; k < domain.dof.size(); ++k)
+    open_.push_back(interface_index_.at(domain.dof[k]));
+  return domain;
 }
 
 /// Memory of all parts, and what a factorisation costs in sweeps on the rank with most to do.
 void SupernodalStepSolver::weigh(bool turns)
 {
-  const double n = static_cast<double>(top_.size());
+  const double n = static_cast<double>(interface_.size());
   double bytes = factor_ ? factor_->bytes() : 0.0;
   double flops = factor_ ? factor_->flops() : 0.0;
   const double open = static_cast<double>(open_.size());
@@ -161,14 +163,15 @@ void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
 {
   const base::Comm& comm = space_->comm();
   const std::vector<double> all = gather_values(values);
-  core::MatX top = top_of(all);
-  const std::vector<double> entries = entries_for_me(all, top);
+  core::MatX interface = interface_of(all);
+  const core::VecX sums = interface.cwiseAbs().rowwise().sum();
+  const std::vector<double> entries = entries_for_me(all, sums);
   base::on_all(comm, [&] {
     if (factor_) factor_->factorise(entries);
   });
-  if (!top_.empty()) {
-    gather_open_blocks(top);
-    base::on_root(comm, [&] { top_block_.factorise(std::move(top)); });
+  if (!interface_.empty()) {
+    gather_open_blocks(sums, interface);
+    base::on_root(comm, [&] { interface_block_.factorise(std::move(interface)); });
   }
   forget_columns();
   R_.clear();
@@ -187,20 +190,20 @@ std::vector<double> SupernodalStepSolver::gather_values(const fem::BlockMatrix& 
   return all;
 }
 
-/// A on the top, on rank 0.
-core::MatX SupernodalStepSolver::top_of(const std::vector<double>& values) const
+/// A on the interface, on rank 0.
+core::MatX SupernodalStepSolver::interface_of(const std::vector<double>& values) const
 {
   if (!space_->comm().root()) return {};
-  const auto n = static_cast<Eigen::Index>(top_.size());
-  core::MatX top = core::MatX::Zero(n, n);
-  for (const Dissection::TopEntry& entry : top_entries_)
-    top(entry.row, entry.column) = top(entry.column, entry.row) = values[entry.source];
-  return top;
+  const auto n = static_cast<Eigen::Index>(interface_.size());
+  core::MatX interface = core::MatX::Zero(n, n);
+  for (const Dissection::InterfaceEntry& entry : interface_entries_)
+    interface(entry.row, entry.column) = interface(entry.column, entry.row) = values[entry.source];
+  return interface;
 }
 
 /// Rank 0 gives every rank the entries of its domain.
 std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<double>& values,
-                                                         const core::MatX& top) const
+                                                         const core::VecX& sums) const
 {
   const base::Comm& comm = space_->comm();
   std::vector<double> entries;
@@ -208,7 +211,6 @@ std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<doubl
     receive(entries, 0, comm.get());
     return entries;
   }
-  const core::VecX sums = top.cwiseAbs().rowwise().sum();
   for (int rank = comm.size() - 1; rank >= 0; --rank) {  // its own ones last
     const std::vector<long long>& source = sources_[static_cast<std::size_t>(rank)];
     entries.resize(source.size());
@@ -225,13 +227,13 @@ std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<doubl
   return entries;
 }
 
-/// Takes off the top, in the order of the ranks, what the domains take off it.
-void SupernodalStepSolver::gather_open_blocks(core::MatX& top) const
+/// Takes off the interface, in the order of the ranks, what the domains take off it.
+void SupernodalStepSolver::gather_open_blocks(const core::VecX& sums, core::MatX& interface) const
 {
   const base::Comm& comm = space_->comm();
   std::vector<double> mine;
   std::vector<int> places;  // of the open dofs in the order of the factor
-  if (factor_ && domain_.open > 0) {
+  if (factor_ && !open_.empty()) {
     const core::MatX left = factor_->open_block();
     mine.assign(left.data(), left.data() + left.size());
     places.resize(open_.size());
@@ -244,15 +246,14 @@ void SupernodalStepSolver::gather_open_blocks(core::MatX& top) const
     send(mine, 0, comm.get());
     return;
   }
-  const core::VecX sums = top.cwiseAbs().rowwise().sum();
   for (int rank = 0; rank < comm.size(); ++rank) {
     if (rank > 0) {
       receive(places, rank, comm.get());
       receive(mine, rank, comm.get());
     }
     const auto n = static_cast<Eigen::Index>(places.size());
-    top(places, places) += Eigen::Map<const core::MatX>(mine.data(), n, n);
-    for (int place : places) top(place, place) -= sums[place];
+    interface(places, places) += Eigen::Map<const core::MatX>(mine.data(), n, n);
+    for (int place : places) interface(place, place) -= sums[place];
   }
 }
 

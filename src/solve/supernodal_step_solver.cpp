@@ -10,7 +10,7 @@ void SupernodalStepSolver::forget_columns()
     columns_->clear();
   else if (factor_)
     columns_.emplace(*factor_);
-  top_block_.forget_columns();
+  interface_block_.forget_columns();
   first_slot_of_node_.clear();
   slot_of_wide_.clear();
   slots_ = 0;
@@ -42,22 +42,22 @@ core::VecX SupernodalStepSolver::mine(const OwnedField& field) const
   return y;
 }
 
-/// This rank's share of the field on the top.
-core::VecX SupernodalStepSolver::top_part(const OwnedField& field) const
+/// This rank's share of the field on the interface.
+core::VecX SupernodalStepSolver::interface_part(const OwnedField& field) const
 {
-  core::VecX top = core::VecX::Zero(static_cast<Eigen::Index>(top_.size()));
+  core::VecX interface = core::VecX::Zero(static_cast<Eigen::Index>(interface_.size()));
   const int first = 3 * space_->first();
-  for (std::size_t k = 0; k < top_.size(); ++k)
-    if (top_[k] >= first && top_[k] < first + space_->owned_dofs())
-      top[static_cast<Eigen::Index>(k)] = field.value[top_[k] - first];
-  return top;
+  for (std::size_t k = 0; k < interface_.size(); ++k)
+    if (interface_[k] >= first && interface_[k] < first + space_->owned_dofs())
+      interface[static_cast<Eigen::Index>(k)] = field.value[interface_[k] - first];
+  return interface;
 }
 
 /// Adds what a forward sweep left at the open places.
-void SupernodalStepSolver::add_left_over(const core::VecX& y, core::VecX& top) const
+void SupernodalStepSolver::add_left_over(const core::VecX& y, core::VecX& interface) const
 {
   for (std::size_t k = 0; k < open_.size(); ++k)
-    top[open_[k]] += y[factor_->position(factor_->closed() + static_cast<int>(k))];
+    interface[open_[k]] += y[factor_->position(factor_->closed() + static_cast<int>(k))];
 }
 
 core::VecX SupernodalStepSolver::sum_on_root(const core::VecX& values) const
@@ -75,11 +75,11 @@ HalfSolution SupernodalStepSolver::begin(const OwnedField& b)
   const OwnedField back = turned_back(b);
   HalfSolution half{mine(back), {}};
   if (factor_) R_.empty() ? factor_->forward(half.value) : factor_->forward_single(half.value);
-  if (!top_.empty()) {
-    half.top = top_part(back);
-    add_left_over(half.value, half.top);
-    half.top = sum_on_root(half.top);
-    if (space_->comm().root()) half.top = top_block_.forward(half.top);
+  if (!interface_.empty()) {
+    half.interface = interface_part(back);
+    add_left_over(half.value, half.interface);
+    half.interface = sum_on_root(half.interface);
+    if (space_->comm().root()) half.interface = interface_block_.forward(half.interface);
   }
   ++ledger_->half_sweeps;
   return half;
@@ -117,46 +117,46 @@ std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, Compliance
 void SupernodalStepSolver::add_nodes(const std::vector<int>& nodes)
 {
   std::vector<int> positions;
-  core::MatX top = core::MatX::Zero(static_cast<Eigen::Index>(top_.size()),
-                                    3 * static_cast<Eigen::Index>(nodes.size()));
+  core::MatX interface = core::MatX::Zero(static_cast<Eigen::Index>(interface_.size()),
+                                          3 * static_cast<Eigen::Index>(nodes.size()));
   for (int node : nodes)
     for (int axis = 0; axis < 3; ++axis) {
       const int dof = 3 * space_->number_of_file(node) + axis;
       const int owned = dof - 3 * space_->first();
       const bool here = owned >= 0 && owned < space_->owned_dofs();
       const int index = here ? index_[static_cast<std::size_t>(owned)] : -1;
-      const auto in_top = top_index_.find(dof);
-      if (space_->comm().root() && in_top != top_index_.end())
-        top(in_top->second, static_cast<Eigen::Index>(positions.size())) = 1.0;
+      const auto in_interface = interface_index_.find(dof);
+      if (space_->comm().root() && in_interface != interface_index_.end())
+        interface(in_interface->second, static_cast<Eigen::Index>(positions.size())) = 1.0;
       positions.push_back(index >= 0 ? factor_->position(index) : -1);
     }
   if (columns_) {
     const core::MatX rest = columns_->add_units(positions);
     for (std::size_t k = 0; k < open_.size(); ++k)
-      top.row(open_[k]) +=
+      interface.row(open_[k]) +=
           rest.row(factor_->position(factor_->closed() + static_cast<int>(k)) - factor_->closed());
   }
-  add_to_top(top);
+  add_to_interface(interface);
 }
 
 void SupernodalStepSolver::add_wide(const OwnedField& vector)
 {
-  core::MatX top = top_part(vector);
+  core::MatX interface = interface_part(vector);
   if (columns_) {
     const core::VecX rest = columns_->add_dense(mine(vector));
     for (std::size_t k = 0; k < open_.size(); ++k)
-      top(open_[k], 0) +=
+      interface(open_[k], 0) +=
           rest[factor_->position(factor_->closed() + static_cast<int>(k)) - factor_->closed()];
   }
-  add_to_top(top);
+  add_to_interface(interface);
 }
 
-void SupernodalStepSolver::add_to_top(core::MatX& columns)
+void SupernodalStepSolver::add_to_interface(core::MatX& columns)
 {
-  if (top_.empty()) return;
+  if (interface_.empty()) return;
   const core::VecX sum = sum_on_root(columns.reshaped());
   if (space_->comm().root())
-    top_block_.add(Eigen::Map<const core::MatX>(sum.data(), columns.rows(), columns.cols()));
+    interface_block_.add(Eigen::Map<const core::MatX>(sum.data(), columns.rows(), columns.cols()));
 }
 
 /// The three rows of every probed node turned with it.
@@ -188,7 +188,7 @@ core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& r
   const std::vector<int> slots = slots_of(probes, report);
   core::MatX C = core::MatX::Zero(probes.size(), probes.size());
   if (columns_) C = columns_->block(slots);
-  if (space_->comm().root() && !top_.empty()) C += top_block_.block(slots);
+  if (space_->comm().root() && !interface_.empty()) C += interface_block_.block(slots);
   if (space_->comm().size() > 1)
     TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, C.data(), static_cast<int>(C.size()), MPI_DOUBLE,
                              MPI_SUM, space_->comm().get()));
@@ -208,7 +208,8 @@ core::VecX SupernodalStepSolver::at(const Probes& probes, const HalfSolution& ha
   ledger_->columns_built += report.built;
   core::MatX read = core::MatX::Zero(probes.size(), 1);
   if (columns_) read = columns_->at(half.value)(slots);
-  if (space_->comm().root() && !top_.empty()) read.col(0) += top_block_.at(half.top)(slots);
+  if (space_->comm().root() && !interface_.empty())
+    read.col(0) += interface_block_.at(half.interface)(slots);
   if (space_->comm().size() > 1)
     TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, read.data(), static_cast<int>(read.size()), MPI_DOUBLE,
                              MPI_SUM, space_->comm().get()));
@@ -219,7 +220,7 @@ core::VecX SupernodalStepSolver::at(const Probes& probes, const HalfSolution& ha
 OwnedField SupernodalStepSolver::finish(const HalfSolution& half, const Probes& probes,
                                         const core::VecX& f)
 {
-  core::VecX y = half.value, top = half.top;
+  core::VecX y = half.value, interface = half.interface;
   if (probes.size() > 0) {
     ComplianceReport report;
     const std::vector<int> slots = slots_of(probes, report);
@@ -227,31 +228,31 @@ OwnedField SupernodalStepSolver::finish(const HalfSolution& half, const Probes& 
     core::VecX by_slot = core::VecX::Zero(slots_);
     by_slot(slots) = turned_back(probes, f);
     if (columns_) columns_->push(by_slot, y);
-    if (space_->comm().root() && !top_.empty()) top_block_.push(by_slot, top);
+    if (space_->comm().root() && !interface_.empty()) interface_block_.push(by_slot, interface);
   }
-  if (!top_.empty()) {
-    if (space_->comm().root()) top = top_block_.backward(top);
-    TROCAR_MPI(
-        MPI_Bcast(top.data(), static_cast<int>(top.size()), MPI_DOUBLE, 0, space_->comm().get()));
+  if (!interface_.empty()) {
+    if (space_->comm().root()) interface = interface_block_.backward(interface);
+    TROCAR_MPI(MPI_Bcast(interface.data(), static_cast<int>(interface.size()), MPI_DOUBLE, 0,
+                         space_->comm().get()));
     for (std::size_t k = 0; k < open_.size(); ++k)
-      y[factor_->position(factor_->closed() + static_cast<int>(k))] = top[open_[k]];
+      y[factor_->position(factor_->closed() + static_cast<int>(k))] = interface[open_[k]];
   }
   if (factor_) R_.empty() ? factor_->backward(y) : factor_->backward_single(y);
   ++ledger_->half_sweeps;
-  return assembled(y, top);
+  return assembled(y, interface);
 }
 
-/// The field from the domain's and the top's dofs, turned with the nodes.
-OwnedField SupernodalStepSolver::assembled(const core::VecX& y, const core::VecX& top) const
+/// The field from the domain's and the interface's dofs, turned with the nodes.
+OwnedField SupernodalStepSolver::assembled(const core::VecX& y, const core::VecX& interface) const
 {
   OwnedField field = space_->zero();
   for (std::size_t dof = 0; dof < index_.size(); ++dof)
     if (index_[dof] >= 0)
       field.value[static_cast<Eigen::Index>(dof)] = y[factor_->position(index_[dof])];
   const int first = 3 * space_->first();
-  for (std::size_t k = 0; k < top_.size(); ++k)
-    if (top_[k] >= first && top_[k] < first + space_->owned_dofs())
-      field.value[top_[k] - first] = top[static_cast<Eigen::Index>(k)];
+  for (std::size_t k = 0; k < interface_.size(); ++k)
+    if (interface_[k] >= first && interface_[k] < first + space_->owned_dofs())
+      field.value[interface_[k] - first] = interface[static_cast<Eigen::Index>(k)];
   if (R_.empty()) return field;
   for (int local = 0; local < space_->owned(); ++local)
     field.node(local) = (turned(space_->file_node(local)) * field.node(local)).eval();
@@ -263,7 +264,8 @@ std::string SupernodalStepSolver::describe() const
   return "supernodal cholesky (cholmod, factor " +
          std::to_string(static_cast<long long>(bytes_ / 1e6)) + " MB" +
          (pinned_ > 0 ? ", " + std::to_string(pinned_) + " nodes pinned" : "") +
-         (top_.empty() ? ")" : ", ranks share " + std::to_string(top_.size()) + " dofs)");
+         (interface_.empty() ? ")"
+                             : ", ranks share " + std::to_string(interface_.size()) + " dofs)");
 }
 
 }  // namespace trocar::solve

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "solve/domain.hpp"
+#include "solve/interface_block.hpp"
 #include "solve/reach_columns.hpp"
 #include "solve/step_solver.hpp"
-#include "solve/top_block.hpp"
 
 namespace trocar::solve {
 
@@ -30,35 +30,35 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   double sweeps_per_factor() const override { return sweeps_per_factor_; }
   double factor_bytes() const override { return bytes_; }
   double memory_bytes() const override { return memory_; }
-  int shared_dofs() const override { return static_cast<int>(top_.size()); }
+  int shared_dofs() const override { return static_cast<int>(interface_.size()); }
   std::string describe() const override;
 
  private:
   core::MatX block(const Probes& probes, ComplianceReport& report) override;
   void forget_columns();
   WholePattern gather_pattern(const StepSolverParts& parts);
-  void hand_out(Dissection& dissection);
+  Domain hand_out(Dissection& dissection);
   void weigh(bool turns);
   std::vector<double> gather_values(const fem::BlockMatrix& values) const;
-  core::MatX top_of(const std::vector<double>& values) const;
+  core::MatX interface_of(const std::vector<double>& values) const;
   std::vector<double> entries_for_me(const std::vector<double>& values,
-                                     const core::MatX& top) const;
-  void gather_open_blocks(core::MatX& top) const;
+                                     const core::VecX& sums) const;
+  void gather_open_blocks(const core::VecX& sums, core::MatX& interface) const;
 
   std::vector<int> slots_of(const Probes& probes, ComplianceReport& report);
   void add_nodes(const std::vector<int>& nodes);
   void add_wide(const OwnedField& vector);
-  void add_to_top(core::MatX& columns);
+  void add_to_interface(core::MatX& columns);
   OwnedField turned_back(const OwnedField& field) const;
   core::VecX turned_back(const Probes& probes, const core::VecX& f) const;
   void turn_rows(const Probes& probes, core::MatX& rows) const;
   const core::Mat3& turned(int file_node) const { return R_[static_cast<std::size_t>(file_node)]; }
 
   core::VecX mine(const OwnedField& field) const;
-  core::VecX top_part(const OwnedField& field) const;
+  core::VecX interface_part(const OwnedField& field) const;
   core::VecX sum_on_root(const core::VecX& values) const;
-  void add_left_over(const core::VecX& y, core::VecX& top) const;
-  OwnedField assembled(const core::VecX& y, const core::VecX& top) const;
+  void add_left_over(const core::VecX& y, core::VecX& interface) const;
+  OwnedField assembled(const core::VecX& y, const core::VecX& interface) const;
 
   const fem::Space* space_;
   const fem::Dirichlet* fixed_;
@@ -66,19 +66,18 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   bool reuse_;
   double bytes_ = 0.0, memory_ = 0.0;
   double sweeps_per_factor_ = 0.0;
-  int pinned_ = 0;                                 ///< nodes put last
-  std::vector<int> value_count_, value_start_;     ///< doubles of every rank's blocks
-  Domain domain_;                                  ///< this rank's
-  std::vector<int> top_;                           ///< whole dofs of the top, ascending
-  std::vector<int> open_;                          ///< place in the top of every open dof
-  std::map<int, int> top_index_;                   ///< place in the top by whole dof
-  std::vector<std::vector<long long>> sources_;    ///< by rank, on rank 0
-  std::vector<Dissection::TopEntry> top_entries_;  ///< on rank 0
-  std::vector<int> index_;                         ///< dof of the domain by owned dof, or -1
-  std::optional<SupernodalFactor> factor_;         ///< of the domain, unless it is empty
-  std::optional<ReachColumns> columns_;            ///< with it
-  TopBlock top_block_;                             ///< on rank 0
-  std::map<int, int> first_slot_of_node_;          ///< file node -> slot of its x dof
+  int pinned_ = 0;                               ///< nodes put last
+  std::vector<int> value_count_, value_start_;   ///< doubles of every rank's blocks
+  std::vector<int> interface_;                   ///< whole dofs of the interface, ascending
+  std::vector<int> open_;                        ///< place in the interface of every open dof
+  std::map<int, int> interface_index_;           ///< place in the interface by whole dof
+  std::vector<std::vector<long long>> sources_;  ///< by rank, on rank 0
+  std::vector<Dissection::InterfaceEntry> interface_entries_;  ///< on rank 0
+  std::vector<int> index_;                  ///< dof of the domain by owned dof, or -1
+  std::optional<SupernodalFactor> factor_;  ///< of the domain, unless it is empty
+  std::optional<ReachColumns> columns_;     ///< with it
+  InterfaceBlock interface_block_;          ///< on rank 0
+  std::map<int, int> first_slot_of_node_;   ///< file node -> slot of its x dof
   std::map<long long, int> slot_of_wide_;
   int slots_ = 0;
   std::vector<core::Mat3> R_;  ///< see `turn`

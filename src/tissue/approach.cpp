@@ -36,8 +36,8 @@ void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, c
     ahead.value = step.h * old.v.value;
     fixed_.clear(ahead);
   }
-  approach.rest = {r.value - values_.times(*space_, ahead).value};
-  fixed_.clear(approach.rest);
+  approach.residual = {r.value - values_.times(*space_, ahead).value};
+  fixed_.clear(approach.residual);
   OwnedField load = r;
   fixed_.clear(load);
   approach.load = space_->norm(load);
@@ -51,9 +51,9 @@ void Tissue::start_from(FreeMotion& motion, const core::VecX& lambda, const Owne
   if (!motion.approach) return;
   Approach& a = *motion.approach;
   a.lambda = motion.pushed = lambda;
-  a.rest.value += forces.value;
-  fixed_.clear(a.rest);
-  motion.half = begin(a.rest);
+  a.residual.value += forces.value;
+  fixed_.clear(a.residual);
+  motion.half = begin(a.residual);
 }
 
 FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
@@ -62,9 +62,9 @@ FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
   if (!current_->older) return motion;
   Approach approach;
   approach.u = u;
-  approach.rest = forces;
-  fixed_.clear(approach.rest);
-  approach.load = space_->norm(approach.rest);
+  approach.residual = forces;
+  fixed_.clear(approach.residual);
+  approach.load = space_->norm(approach.residual);
   motion.approach = std::move(approach);
   return motion;
 }
@@ -75,11 +75,11 @@ void Tissue::give_up(FreeMotion& motion)
   const Approach& a = *motion.approach;
   motion.base = a.u;
   motion.pushed = a.lambda;
-  motion.half = begin(a.rest);
+  motion.half = begin(a.residual);
   motion.approach.reset();
 }
 
-bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance)
+bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance)
 {
   if (!motion.approach) return true;
   Approach& a = *motion.approach;
@@ -87,10 +87,10 @@ bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, do
   core::VecX more = push.lambda - a.lambda;
   OwnedField d{u.value - a.u.value};
   OwnedField A_d = values_.times(*space_, d);
-  OwnedField rest{a.rest.value - A_d.value};
+  const OwnedField pushed = rows ? push.forces(more) : space_->zero();
+  OwnedField rest{a.residual.value + pushed.value - A_d.value};
   double load = a.load;
   if (rows) {
-    rest.value += push.forces(more).value;
     OwnedField forces = push.forces(push.lambda);
     fixed_.clear(forces);
     load += space_->norm(forces);
@@ -110,12 +110,12 @@ bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, do
     return false;
   }
   if (rows && !(same_laws && a.on_rows))
-    change_rows(a, d, A_d, more, push, same_laws);
+    change_rows(a, d, A_d, more, pushed, push, same_laws);
   else
     advance(a, std::move(d), std::move(A_d), std::move(more), push);
   motion.base = a.u;
   motion.pushed = a.lambda;
-  motion.half = begin(a.rest);
+  motion.half = begin(a.residual);
   return false;
 }
 
@@ -123,22 +123,22 @@ bool Tissue::there(FreeMotion& motion, const OwnedField& u, const Push& push, do
 /// metric of P: it falls along d at least up to (dᵀPd)/(dᵀAd). The first step is a whole one, to
 /// get on the bilateral rows.
 void Tissue::change_rows(Approach& a, const OwnedField& d, const OwnedField& A_d,
-                         const core::VecX& more, const Push& push, bool same_laws) const
+                         const core::VecX& more, const OwnedField& pushed, const Push& push,
+                         bool same_laws) const
 {
-  const OwnedField pushed = push.forces(more);
   double step = 1.0;
   if (a.passes > 1 && !same_laws) {
     const double others = push.yielding(more, more);
-    const double P = space_->dot(d, {a.rest.value + pushed.value}) + others;
+    const double P = space_->dot(d, {a.residual.value + pushed.value}) + others;
     const double A = space_->dot(d, A_d) + others;
     if (P < A) step = P / A;
   }
   a.u.value += step * d.value;
   a.lambda += step * more;
-  a.rest.value += step * (pushed.value - A_d.value);
-  fixed_.clear(a.rest);
+  a.residual.value += step * (pushed.value - A_d.value);
+  fixed_.clear(a.residual);
   a.on_rows = step == 1.0;
-  a.way_energy = 0.0;
+  a.direction_energy = 0.0;
 }
 
 /// One step of conjugate gradients from a preconditioned direction d; needles and soft rows are
@@ -147,25 +147,25 @@ void Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
                      const Push& push) const
 {
   const bool rows = more.size() > 0;
-  if (a.way_energy > 0.0) {
-    double coupled = space_->dot(d, a.A_way);
-    if (rows) coupled += push.yielding(more, a.lambda_way);
-    const double beta = -coupled / a.way_energy;
-    d.value += beta * a.way.value;
-    A_d.value += beta * a.A_way.value;
-    more += beta * a.lambda_way;
+  if (a.direction_energy > 0.0) {
+    double coupled = space_->dot(d, a.A_direction);
+    if (rows) coupled += push.yielding(more, a.lambda_direction);
+    const double beta = -coupled / a.direction_energy;
+    d.value += beta * a.direction.value;
+    A_d.value += beta * a.A_direction.value;
+    more += beta * a.lambda_direction;
   }
-  a.way_energy = space_->dot(d, A_d) + (rows ? push.yielding(more, more) : 0.0);
-  const double along = space_->dot(a.rest, d);
-  const double step = a.way_energy > 0.0 ? along / a.way_energy : 1.0;
+  a.direction_energy = space_->dot(d, A_d) + (rows ? push.yielding(more, more) : 0.0);
+  const double along = space_->dot(a.residual, d);
+  const double step = a.direction_energy > 0.0 ? along / a.direction_energy : 1.0;
   a.u.value += step * d.value;
   a.lambda += step * more;
-  a.rest.value -= step * A_d.value;
-  if (rows) a.rest.value += step * push.forces(more).value;
-  fixed_.clear(a.rest);
-  a.way = std::move(d);
-  a.A_way = std::move(A_d);
-  a.lambda_way = std::move(more);
+  a.residual.value -= step * A_d.value;
+  if (rows) a.residual.value += step * push.forces(more).value;
+  fixed_.clear(a.residual);
+  a.direction = std::move(d);
+  a.A_direction = std::move(A_d);
+  a.lambda_direction = std::move(more);
 }
 
 }  // namespace trocar::tissue

@@ -23,14 +23,14 @@ struct Push
 /// is the plain iteration u <- u + P⁻¹(rest).
 struct Approach
 {
-  fem::OwnedField u;           ///< where the next pass starts [m]
-  core::VecX lambda;           ///< multipliers there (rows) [N]
-  fem::OwnedField rest;        ///< r + Hᵀλ - A Δu there [N]
-  fem::OwnedField way, A_way;  ///< last direction [m] and its product with A [N]
-  core::VecX lambda_way;
-  double way_energy = 0.0;  ///< of the last direction [J]; 0: none
-  double load = 0.0;        ///< ‖r‖ [N]
-  bool on_rows = false;     ///< u meets the laws of all rows with `lambda`
+  fem::OwnedField u;                       ///< where the next pass starts [m]
+  core::VecX lambda;                       ///< multipliers there (rows) [N]
+  fem::OwnedField residual;                ///< r + Hᵀλ - A Δu there [N]
+  fem::OwnedField direction, A_direction;  ///< last direction [m] and its product with A [N]
+  core::VecX lambda_direction;
+  double direction_energy = 0.0;  ///< of the last direction [J]; 0: none
+  double load = 0.0;              ///< ‖r‖ [N]
+  bool on_rows = false;           ///< u meets the laws of all rows with `lambda`
   int passes = 0;
 };
 

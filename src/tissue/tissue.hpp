@@ -100,10 +100,9 @@ class Tissue
   FreeMotion pushed(const OwnedField& u, const OwnedField& forces);
   /// True when u is the answer to this linearisation; else `motion` becomes the next pass of the
   /// approach to it. `tolerance`: of ‖r + Hᵀλ - AΔu‖ against ‖r‖ + ‖Hᵀλ‖. Collective.
-  bool there(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance);
+  bool converged(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance);
   /// Factors the present operator and ends the approach with it, from where it stands. Collective.
   void give_up(FreeMotion& motion);
-  double lag_tolerance() const { return settings_.lag_tolerance; }
   /// Counts the factors made: compliance columns of one version belong together.
   int factor_version() const { return factor_version_; }
   /// Linearisations that the factor has served.
@@ -172,7 +171,8 @@ class Tissue
   void begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
                       const OwnedField& r, FreeMotion& motion);
   void change_rows(Approach& approach, const OwnedField& d, const OwnedField& A_d,
-                   const core::VecX& more, const Push& push, bool same_laws) const;
+                   const core::VecX& more, const OwnedField& pushed, const Push& push,
+                   bool same_laws) const;
   void advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
                const Push& push) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,

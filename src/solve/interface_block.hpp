@@ -8,7 +8,7 @@ namespace trocar::solve {
 
 /// The dense end of an elimination that several ranks share: what is left of A on the dofs between
 /// their domains, and the columns of X there. Serial; lives on rank 0.
-class TopBlock
+class InterfaceBlock
 {
  public:
   /// Takes A less what the domains have taken off it (n x n). Failure (70) when it is not positive

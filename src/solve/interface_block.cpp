@@ -1,11 +1,11 @@
-#include "solve/top_block.hpp"
+#include "solve/interface_block.hpp"
 
 #include "base/blas.hpp"
 #include "core/failure.hpp"
 
 namespace trocar::solve {
 
-void TopBlock::factorise(core::MatX S)
+void InterfaceBlock::factorise(core::MatX S)
 {
   L_ = std::move(S);
   const Eigen::LLT<Eigen::Ref<core::MatX>> factor(L_);
@@ -16,17 +16,17 @@ void TopBlock::factorise(core::MatX S)
   forget_columns();
 }
 
-core::VecX TopBlock::forward(const core::VecX& t) const
+core::VecX InterfaceBlock::forward(const core::VecX& t) const
 {
   return L_.triangularView<Eigen::Lower>().solve(t);
 }
 
-core::VecX TopBlock::backward(const core::VecX& y) const
+core::VecX InterfaceBlock::backward(const core::VecX& y) const
 {
   return L_.triangularView<Eigen::Lower>().transpose().solve(y);
 }
 
-void TopBlock::add(const core::MatX& t)
+void InterfaceBlock::add(const core::MatX& t)
 {
   core::MatX columns = t;
   base::solve_lower({L_.data(), L_.rows(), L_.cols(), Eigen::OuterStride<>(L_.rows())}, columns);
@@ -35,7 +35,7 @@ void TopBlock::add(const core::MatX& t)
   X_.rightCols(t.cols()) = columns;
 }
 
-core::MatX TopBlock::block(const std::vector<int>& slots) const
+core::MatX InterfaceBlock::block(const std::vector<int>& slots) const
 {
   return base::gram(X_(Eigen::all, slots));
 }
