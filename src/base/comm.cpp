@@ -51,6 +51,12 @@ double Comm::sum(double value) const
   return value;
 }
 
+void Comm::sum(core::VecX& values) const
+{
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
+                           MPI_SUM, comm_));
+}
+
 long long Comm::sum(long long value) const
 {
   TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_LONG_LONG, MPI_SUM, comm_));

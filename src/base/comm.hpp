@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/failure.hpp"
+#include "core/math.hpp"
 
 namespace trocar::base {
 
@@ -21,6 +22,7 @@ class Comm
   bool root() const noexcept { return rank_ == 0; }
 
   double sum(double value) const;        ///< collective; equal on all ranks
+  void sum(core::VecX& values) const;    ///< collective, in place
   double max(double value) const;        ///< collective
   long long sum(long long value) const;  ///< collective
   bool all(bool value) const;            ///< collective: true when it is true on every rank

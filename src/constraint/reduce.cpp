@@ -8,22 +8,26 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Ĥ (rows x 3 probed nodes): the rows in terms of the probes.
-Sparse rows_on_probes(const Set& set, const std::vector<int>& nodes)
+/// Ĥ (rows x slots of the probes): the rows in terms of the probes.
+Sparse rows_on_probes(const Set& set)
 {
+  const solve::Probes probes = set.probes();
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
+    if (row.wide >= 0)
+      entries.emplace_back(i, 3 * static_cast<int>(probes.nodes.size()) + row.wide, 1.0);
     for (std::size_t a = 0; a < row.anchor.node.size(); ++a) {
       const double weight = row.anchor.weight[static_cast<Eigen::Index>(a)];
       if (weight == 0.0) continue;
-      const auto at = std::lower_bound(nodes.begin(), nodes.end(), row.anchor.node[a]);
-      const int slot = 3 * static_cast<int>(at - nodes.begin());
+      const auto at =
+          std::lower_bound(probes.nodes.begin(), probes.nodes.end(), row.anchor.node[a]);
+      const int slot = 3 * static_cast<int>(at - probes.nodes.begin());
       for (int axis = 0; axis < 3; ++axis)
         entries.emplace_back(i, slot + axis, weight * row.direction[axis]);
     }
   }
-  Sparse H(set.size(), 3 * static_cast<Eigen::Index>(nodes.size()));
+  Sparse H(set.size(), probes.size());
   H.setFromTriplets(entries.begin(), entries.end());
   return H;
 }
@@ -42,16 +46,23 @@ core::MatX levers(const Set& set, int body, Eigen::Index dofs)
 
 }  // namespace
 
-std::vector<int> Set::probed_nodes() const
+int Set::add_wide(std::shared_ptr<const solve::WideProbe> probe)
 {
-  std::vector<int> nodes;
+  wide_.push_back(std::move(probe));
+  return static_cast<int>(wide_.size()) - 1;
+}
+
+solve::Probes Set::probes() const
+{
+  solve::Probes probes;
   for (const Row& row : rows_)
     for (std::size_t a = 0; a < row.anchor.node.size(); ++a)
       if (row.anchor.weight[static_cast<Eigen::Index>(a)] != 0.0)
-        nodes.push_back(row.anchor.node[a]);
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+        probes.nodes.push_back(row.anchor.node[a]);
+  std::sort(probes.nodes.begin(), probes.nodes.end());
+  probes.nodes.erase(std::unique(probes.nodes.begin(), probes.nodes.end()), probes.nodes.end());
+  for (const auto& wide : wide_) probes.wide.push_back(wide.get());
+  return probes;
 }
 
 core::VecX Set::starts() const
@@ -65,7 +76,7 @@ law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
                     const std::vector<SmallBody>& bodies)
 {
   law::Problem problem;
-  const Sparse H = rows_on_probes(set, set.probed_nodes());
+  const Sparse H = rows_on_probes(set);
   const core::MatX HC = H * C;
   problem.W = HC * H.transpose();
   problem.g = H * free;
@@ -77,6 +88,10 @@ law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
     problem.g -= H_t.transpose() * bodies[b].free_increment;
   }
   problem.W = 0.5 * (problem.W + problem.W.transpose()).eval();
+  for (const Set::Coupling& c : set.couplings()) {
+    problem.W(c.i, c.j) += c.softness;
+    if (c.i != c.j) problem.W(c.j, c.i) += c.softness;
+  }
 
   problem.bound.resize(set.size());
   problem.start.resize(set.size());
@@ -98,12 +113,12 @@ law::Problem reduce(const Set& set, const core::MatX& C, const core::VecX& free,
 
 core::VecX row_displacements(const Set& set, const core::VecX& probed)
 {
-  return rows_on_probes(set, set.probed_nodes()) * probed;
+  return rows_on_probes(set) * probed;
 }
 
 core::VecX probe_forces(const Set& set, const core::VecX& lambda)
 {
-  return rows_on_probes(set, set.probed_nodes()).transpose() * lambda;
+  return rows_on_probes(set).transpose() * lambda;
 }
 
 double yielding(const Set& set, const std::vector<SmallBody>& bodies, const core::VecX& a,
@@ -112,6 +127,8 @@ double yielding(const Set& set, const std::vector<SmallBody>& bodies, const core
   double sum = 0.0;
   for (int i = 0; i < set.size(); ++i)
     sum += set.rows()[static_cast<std::size_t>(i)].softness * a[i] * b[i];
+  for (const Set::Coupling& c : set.couplings())
+    sum += c.softness * (c.i == c.j ? a[c.i] * b[c.i] : a[c.i] * b[c.j] + a[c.j] * b[c.i]);
   for (std::size_t n = 0; n < bodies.size(); ++n) {
     const Eigen::Index dofs = bodies[n].free_increment.size();
     if (dofs == 0) continue;

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "core/math.hpp"
 #include "law/problem.hpp"
+#include "solve/isolated_compliance.hpp"
 
 namespace trocar::constraint {
 
@@ -30,10 +31,11 @@ struct Anchor
 
 /// One constraint row: δ = gap + direction·u(anchor) - h·w, where w are the increments of the
 /// small body (the needle). λ > 0 pushes the tissue along `direction` and the body against it.
+/// A wide row takes hold of many dofs at once: δ = gap + g·u with the set's wide probe g.
 struct Row
 {
-  Anchor anchor;
-  Vec3 direction;                             ///< unit, world frame
+  Anchor anchor{};
+  Vec3 direction = Vec3::Zero();              ///< unit, world frame
   int body = -1;                              ///< index of the small body, -1: nothing moves there
   std::vector<std::pair<int, double>> lever;  ///< (dof of the body, coefficient)
   double gap = 0.0;                           ///< δ at zero increments [m]
@@ -45,6 +47,7 @@ struct Row
   double relative_softness = 0.0;  ///< more softness, in units of the row's own W_ii
   double start = 0.0;              ///< multiplier to start from [N]
   int point = 0;                   ///< coupling point, ascending along the set
+  int wide = -1;                   ///< wide probe of the set, instead of an anchor
 };
 
 /// The rows of one step. Born and gone within it.
@@ -57,11 +60,28 @@ class Set
   const std::vector<Row>& rows() const { return rows_; }
   core::VecX starts() const;  ///< multipliers to start from (rows) [N]
 
-  /// File nodes with a non-zero weight, ascending: what the rows probe.
-  std::vector<int> probed_nodes() const;
+  /// Adds a wide probe and gives its index, for `Row::wide`.
+  int add_wide(std::shared_ptr<const solve::WideProbe> probe);
+  /// What the rows probe: file nodes with a non-zero weight, ascending, and the wide probes, which
+  /// live as long as the set.
+  solve::Probes probes() const;
+
+  /// Rows that give way to each other's multipliers: δ_i grows by `softness` · λ_j and δ_j
+  /// likewise [m/N]; i may be j. Positive semidefinite in all.
+  struct Coupling
+  {
+    int i, j;
+    double softness;
+  };
+  std::vector<Coupling>& couplings() { return couplings_; }
+  const std::vector<Coupling>& couplings() const { return couplings_; }
+  /// For what changes while laws are met: a row's gap.
+  void set_gap(int row, double gap) { rows_[static_cast<std::size_t>(row)].gap = gap; }
 
  private:
   std::vector<Row> rows_;
+  std::vector<std::shared_ptr<const solve::WideProbe>> wide_;
+  std::vector<Coupling> couplings_;
 };
 
 /// A body so small that its operator is dense and known to every rank.

@@ -180,6 +180,11 @@ bool Options::given(const std::string& name, const std::string& group) const
   return given_.count(with_group(name, group)) > 0 || given_.count(without_group(name)) > 0;
 }
 
+bool Options::given_for(const std::string& name, const std::string& group) const
+{
+  return given_.count(with_group(name, group)) > 0;
+}
+
 std::set<std::string> Options::groups_given(const std::string& pattern) const
 {
   std::set<std::string> groups;

@@ -64,6 +64,9 @@ class Options
   /// True when the user gave the option (for this group, if one is named).
   bool given(const std::string& name, const std::string& group = "") const;
 
+  /// True when the user gave it for this group itself.
+  bool given_for(const std::string& name, const std::string& group) const;
+
   /// Every group the user named in options that match the pattern, sorted.
   std::set<std::string> groups_given(const std::string& pattern) const;
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "driver/simulation.hpp"
 #include "law/solve.hpp"
@@ -6,34 +7,40 @@
 // 3 to 5 of the step: rows, the dense problem, the correction.
 namespace trocar::driver {
 Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
-                                              const tissue::FreeMotion& tissue, State& next,
-                                              core::VecX& last, StepReport& report)
+                                              const tissue::FreeMotion& tissue, double tolerance,
+                                              State& next, core::VecX& last, StepReport& report)
 {
   Pass pass;
+  pass.tolerance = tolerance;
   std::vector<needle::Linearised> needles;
   for (std::size_t i = 0; i < needles_.size(); ++i)
     needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
   for (const needle::Linearised& needle : needles)
     pass.needles.push_back({needle.held, needle.factor, needle.free_increment});
   pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
-  pass.probes.nodes = pass.rows.set.probed_nodes();
+  if (cavities_)
+    pass.rows.of_cavities =
+        cavities_->add_rows(next.cavities, walls(next), next.tissue.u, now, pass.rows.set);
+  pass.probes = pass.rows.set.probes();
   const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
   if (last.size() != pass.rows.set.size()) last = pass.rows.set.starts();
   const bool stale =
       scenario_.tissue.reuse == solve::Reuse::stale && tissue.approach && !pass.rows.set.empty();
-  if (!stale || scenario_.output.stale_error)
-    meet_laws(now, tissue, start, last, pass, next.tissue.u, report);
-  if (stale && !pass.trouble)
-    meet_stale_laws(now, tissue, start, last, pass, next.tissue.u, report);
+  if (cavities_ && !cavities_->frozen(next.cavities).empty())
+    meet_frozen_laws(now, tissue, last, pass, next, report);
+  else if (!stale || scenario_.output.stale_error)
+    meet_laws(tissue, start, last, pass, next.tissue.u, report);
+  if (stale && !pass.trouble) meet_stale_laws(tissue, start, last, pass, next.tissue.u, report);
   if (pass.trouble) return pass;
   last = pass.lambda.lambda;
+  if (cavities_) cavities_->take(pass.rows.of_cavities, last, now, next.cavities);
   correct(old, now, needles, pass, next, report);
   return pass;
 }
 
-void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                           const fem::OwnedField& start, const core::VecX& last, Pass& pass,
-                           fem::OwnedField& u, StepReport& report)
+void Simulation::meet_laws(const tissue::FreeMotion& tissue, const fem::OwnedField& start,
+                           const core::VecX& last, Pass& pass, fem::OwnedField& u,
+                           StepReport& report)
 {
   tissue::FreeMotion motion = tissue;
   if (motion.approach) tissue_.start_from(motion, last, push_of(pass).forces(last));
@@ -46,7 +53,8 @@ void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& 
         free -= pass.C * constraint::probe_forces(pass.rows.set, motion.pushed);
       pass.trouble = solve_constraints(free, last, pass, report);
     }
-    if (pass.trouble && motion.approach) {  // try with the factor of the operator itself
+    if (pass.trouble && motion.approach &&
+        tissue_.lags()) {  // try with the factor of the operator itself
       tissue_.give_up(motion);
       pass.trouble.reset();
       continue;
@@ -54,22 +62,24 @@ void Simulation::meet_laws(const core::TimeStep& now, const tissue::FreeMotion& 
     if (pass.trouble) return;
     u = tissue_.finish(motion, pass.probes, more_forces(motion, pass));  // 5
     ++report.passes;
-    converged = !motion.approach || tissue_.converged(motion, u, push_of(pass), lag_tolerance(now));
+    converged = !motion.approach || tissue_.converged(motion, u, push_of(pass), pass.tolerance);
+    pass.trouble = motion.trouble;
+    if (pass.trouble) return;
   }
 }
 
 // The needle paper's reuse of columns from step to step: the laws are met once, with the compliance
 // of an older operator; the tissue obeys the present one. What the gaps are off is reported.
-void Simulation::meet_stale_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                                 const fem::OwnedField& start, const core::VecX& last, Pass& pass,
-                                 fem::OwnedField& u, StepReport& report)
+void Simulation::meet_stale_laws(const tissue::FreeMotion& tissue, const fem::OwnedField& start,
+                                 const core::VecX& last, Pass& pass, fem::OwnedField& u,
+                                 StepReport& report)
 {
   const fem::OwnedField exact = u;
   const auto alone = [&](tissue::FreeMotion motion) {
     do {
       u = tissue_.finish(motion, {}, {});
       ++report.passes;
-    } while (!tissue_.converged(motion, u, {}, lag_tolerance(now)));
+    } while (!tissue_.converged(motion, u, {}, pass.tolerance));
   };
   tissue::FreeMotion motion = tissue;
   tissue_.start_from(motion, {}, space_.zero());
@@ -120,10 +130,13 @@ tissue::Push Simulation::push_of(const Pass& pass) const
   return push;
 }
 
-/// Of a step that is iterated anyway, a linearisation need only lead on.
-double Simulation::lag_tolerance(const core::TimeStep& now) const
+/// Of a step that is iterated anyway, a linearisation need only lead on. Under pressures that
+/// follow it does so by the square of what the last one left, so that Newton's rate is kept.
+double Simulation::lag_tolerance(const core::TimeStep& now, double residual) const
 {
-  constexpr double leads_on = 1e-4;
+  constexpr double leads_on = 1e-4, least = 1e-10;
+  if (cavities_ && cavities_->follows())
+    return std::isfinite(residual) ? std::clamp(residual * residual, least, leads_on) : leads_on;
   const bool iterated = now.is_static || scenario_.time.newton_max > 1;
   return std::max(scenario_.tissue.lag_tolerance, iterated ? leads_on : 0.0);
 }
@@ -132,13 +145,20 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
                                                          const core::VecX& start, Pass& pass,
                                                          StepReport& report)
 {
-  const constraint::Set& set = pass.rows.set;
-  law::Problem problem = constraint::reduce(set, pass.C, free, pass.needles);
+  constexpr int most_refreshes = 50;
+  constraint::Set& set = pass.rows.set;
+  law::Problem& problem = pass.problem;
   const law::Multipliers last = std::move(pass.lambda);
-  problem.start = last.converged ? last.lambda : start;
-  pass.lambda = law::solve(problem, scenario_.laws);
-  ++ledger_.constraint_solves;
-  if (!pass.lambda.converged) return pass.lambda.why;
+  for (int refreshes = 0;; ++refreshes) {  // once, or until the laws of fluids settle
+    problem = constraint::reduce(set, pass.C, free, pass.needles);
+    problem.start = refreshes > 0 ? pass.lambda.lambda : last.converged ? last.lambda : start;
+    pass.lambda = law::solve(problem, scenario_.laws);
+    ++ledger_.constraint_solves;
+    if (!pass.lambda.converged) return pass.lambda.why;
+    report.iterations += pass.lambda.iterations;
+    if (!cavities_ || !cavities_->refresh(pass.lambda.lambda, pass.rows.of_cavities, set)) break;
+    if (refreshes == most_refreshes) return "the laws of the fluids do not settle";
+  }
   pass.same_laws = last.converged && law::same_states(problem, last.lambda, pass.lambda.lambda);
   if (!last.converged) law::compare(problem, scenario_.compare, report.trials);
 
@@ -152,7 +172,6 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
   report.rank = pass.lambda.rank;
   report.condition = pass.lambda.condition;
   report.nonunique = pass.lambda.nonunique;
-  report.iterations += pass.lambda.iterations;
   report.residual = std::max(report.residual, pass.lambda.residual);
   report.outer = std::max(report.outer, pass.lambda.outer);
   report.contraction = std::max(report.contraction, pass.lambda.contraction);

@@ -9,12 +9,15 @@ void Simulation::account(const State& old, const core::TimeStep& now, const Pass
                          const StepReport& report, State& next) const
 {
   const tissue::Work tissue =
-      tissue_.work(old.tissue, next.tissue, now, solve::spread(pass.probes, pass.forces, space_));
+      tissue_.work(old.tissue, next.tissue, now, all_forces(pass, next, now));
   EnergyAccount& energy = next.energy;
   energy = old.energy;
   energy.elastic = tissue.elastic;
   energy.kinetic = tissue.kinetic;
   energy.supplied += tissue.supplied;
+  if (cavities_)  // by the pressures of the fluids
+    energy.supplied += space_.dot(cavities_->forces(next.cavities, walls(next), now),
+                                  {next.tissue.u.value - old.tissue.u.value});
   energy.damping += tissue.damped;
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     const needle::Energy needle = needles_[i].energy(old.needles[i], next.needles[i]);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "base/blas.hpp"
 #include "driver/provenance.hpp"
@@ -47,9 +48,40 @@ void Log::set_up(double seconds) const
         "warning: the BLAS is slow (reference BLAS, or a busy machine): install "
         "libopenblas0-serial, and set OMP_THREAD_LIMIT=1 and, on AVX-512 processors, "
         "OPENBLAS_CORETYPE=SkylakeX\n");
+  if (simulation_->cavities()) cavities(*simulation_->cavities());
   for (const std::string& warning : scenario.warnings)
     std::printf("warning: %s\n", warning.c_str());
   std::fflush(stdout);
+}
+
+void Log::cavities(const cavity::Cavities& cavities) const
+{
+  const Scenario& scenario = simulation_->scenario();
+  double softest = std::numeric_limits<double>::infinity(), density = 0.0;
+  for (const tissue::Material& m : scenario.tissue.materials) {
+    softest = std::min(softest, 0.5 * m.young / (1.0 + m.poisson));
+    density = std::max(density, m.density);
+  }
+  for (int i = 0; i < cavities.size(); ++i) {
+    const cavity::Wall& wall = cavities.wall(i);
+    std::printf("cavity %s: volume %.6g m^3, area %.6g m^2, %zu wall nodes, %zu caps\n",
+                scenario.cavities.cavities[static_cast<std::size_t>(i)].name.c_str(), wall.volume(),
+                wall.area(), wall.nodes().size(), wall.rims().size());
+    for (const std::vector<int>& rim : wall.rims()) {
+      std::printf("  cap between nodes");
+      for (int node : rim)
+        std::printf(" %lld", scenario.mesh.node_tag[static_cast<std::size_t>(node)]);
+      std::printf("\n");
+    }
+    // Shear waves that the steps resolve would take the fluid along.
+    const double crossing = std::cbrt(wall.volume()) * std::sqrt(density / softest);
+    if (scenario.time.analysis == Analysis::dynamic && scenario.time.step < crossing &&
+        scenario.time.end > 0.0)
+      std::printf(
+          "warning: the fluid has no inertia, but steps of %.3g s resolve waves past the "
+          "cavity (%.3g s)\n",
+          scenario.time.step, crossing);
+  }
 }
 
 void Log::step(int number, const State& state, const StepReport& report)

@@ -21,6 +21,7 @@ class Log
   void finish() const;
 
  private:
+  void cavities(const cavity::Cavities& cavities) const;
   bool speaks() const;
 
   const Simulation* simulation_;

@@ -1,78 +1,18 @@
 #include "driver/option_list.hpp"
 
-#include <limits>
+#include "driver/option_kinds.hpp"
 
 namespace trocar::driver {
 namespace {
-
-using core::OptionSpec;
-using core::OptionType;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-OptionSpec positive(const char* name, const char* fallback, const char* unit, const char* help)
-{
-  return {name, OptionType::real, fallback, unit, help, 0.0, infinity, true, false};
-}
-OptionSpec not_negative(const char* name, const char* fallback, const char* unit, const char* help)
-{
-  return {name, OptionType::real, fallback, unit, help, 0.0, infinity, false, false};
-}
-OptionSpec poisson(const char* name, const char* fallback)
-{
-  return {name, OptionType::real, fallback, "1", "Poisson's ratio", -1.0, 0.5, true, true};
-}
-OptionSpec count(const char* name, const char* fallback, double low, const char* help)
-{
-  return {name, OptionType::integer, fallback, "1", help, low, 1e9, false, false};
-}
-OptionSpec word(const char* name, const char* fallback, const char* help)
-{
-  return {name, OptionType::text, fallback, "", help};
-}
-OptionSpec list(const char* name, const char* help)
-{
-  return {name, OptionType::names, "\"\"", "", help};
-}
-OptionSpec vector(const char* name, const char* fallback, const char* unit, const char* help)
-{
-  return {name, OptionType::vector, fallback, unit, help};
-}
-OptionSpec flag(const char* name, const char* help)
-{
-  return {name, OptionType::flag, "false", "", help};
-}
-OptionSpec choice(const char* name, const char* fallback, std::vector<std::string> choices,
-                  const char* help)
-{
-  OptionSpec spec{name, OptionType::choice, fallback, "", help};
-  spec.choices = std::move(choices);
-  return spec;
-}
-
-OptionSpec withdrawal(const std::string& name)
-{
-  return {name, OptionType::real, "-1",  "",   "the same on withdrawal; -1 = as on the advance",
-          -1.0, infinity,         false, false};
-}
-
-/// Declares an option and its override for one named thing: tissue_young, tissue_<volume>_young.
-void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec, const std::string& group)
-{
-  table.push_back(spec);
-  OptionSpec own = spec;
-  own.name.insert(own.name.find('_') + 1, group + "_");
-  own.help = spec.help + " of one " + group.substr(1, group.size() - 2);
-  table.push_back(own);
-}
 
 std::vector<OptionSpec> general_options()
 {
   return {
       word("mesh", "", "Gmsh file (2.2 or 4.1, ascii or binary)"),
       positive("mesh_scale", "1", "1", "factor on the mesh's coordinates, 1e-3 for millimetres"),
-      choice("analysis", "dynamic", {"dynamic", "static"},
-             "backward Euler in time; or equilibrium: one, or a quasi-static path with time_end"),
+      choice("analysis", "dynamic", {"dynamic", "static", "pv_curve"},
+             "backward Euler in time; equilibrium: one, or a quasi-static path with time_end; or "
+             "equilibria with a cavity held at one volume after the other"),
       positive("time_step", "0.01", "s", "step length h"),
       not_negative("time_end", "0", "s", "end of the run, 0 = no steps (static: one equilibrium)"),
       choice("time_initial", "unstressed", {"unstressed", "equilibrium"},
@@ -105,6 +45,9 @@ void add_boundary(std::vector<OptionSpec>& t)
       vector("boundary_<surf>_displacement", "free,free,free", "m",
              "prescribed displacement of a surface or point group, 'free' per axis"),
       vector("boundary_<surf>_traction", "0,0,0", "Pa", "dead traction on a physical surface"),
+      word("boundary_<surf>_field", "",
+           "CSV (columns node,x,y,z: Gmsh's node tag and displacement [m]) for a displacement that "
+           "differs from node to node"),
       word("boundary_<surf>_curve", "",
            "CSV (columns time,factor) that scales displacement and traction of the group"),
   };
@@ -261,8 +204,8 @@ void add_output(std::vector<OptionSpec>& t)
 std::vector<OptionSpec> build_table()
 {
   std::vector<OptionSpec> t = general_options();
-  for (auto* add : {add_tissue, add_boundary, add_needles, add_insertion, add_constraint,
-                    add_compliance, add_output})
+  for (auto* add : {add_tissue, add_boundary, add_needles, add_insertion, add_cavity_options,
+                    add_constraint, add_compliance, add_output})
     add(t);
   return t;
 }

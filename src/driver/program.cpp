@@ -12,6 +12,7 @@
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
 #include "driver/provenance.hpp"
+#include "driver/pv_curve.hpp"
 #include "driver/recorder.hpp"
 
 namespace trocar::driver {
@@ -102,7 +103,10 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   if (!start.state) throw core::solver_error("at the start: " + start.why);
   recorder.record(simulation, *start.state, start.report, 0, 0.0, true);
   log.step(0, *start.state, start.report);
-  Clock(simulation, recorder, log).run(std::move(*start.state));
+  if (scenario.time.analysis == Analysis::pv_curve)
+    run_pv_curve(simulation, recorder, log, *start.state);
+  else
+    Clock(simulation, recorder, log).run(std::move(*start.state));
   recorder.close(simulation);
   log.finish();
 }

@@ -17,6 +17,25 @@ void add_energy_series(const Scenario& scenario, std::vector<io::Series>& series
       series.push_back({std::string("energy/") + name, 0, "J"});
 }
 
+void add_cavity_series(const Scenario& scenario, std::vector<io::Series>& series)
+{
+  for (const auto& cavity : scenario.cavities.cavities) {
+    const std::string at = "cavity/" + cavity.name + "/";
+    series.insert(series.end(), {{at + "pressure", 0, "Pa"},
+                                 {at + "volume", 0, "m^3"},
+                                 {at + "volume_error", 0, "1"},
+                                 {at + "iterations", 0, "1"},
+                                 {at + "alarm", 0, "1"}});
+  }
+  for (const auto& edge : scenario.cavities.edges) {
+    const std::string at = "edge/" + edge.name + "/";
+    series.insert(series.end(),
+                  {{at + "flow", 0, "m^3/s"}, {at + "moved", 0, "m^3"}, {at + "state", 0, "1"}});
+  }
+  for (const auto& tool : scenario.tissue.boundary.displacements)
+    series.push_back({"boundary/" + tool.group + "/force", 3, "N"});
+}
+
 void add_compare_series(const Scenario& scenario, std::vector<io::Series>& series)
 {
   for (const law::Contender& contender : scenario.compare) {
@@ -46,6 +65,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                  {at + "points", 0, "1"},
                                  {at + "slipping", 0, "1"}});
   }
+  add_cavity_series(scenario, series);
   add_energy_series(scenario, series);
   series.insert(series.end(), {{"constraint/rows", 0, "1"},
                                {"constraint/rank", 0, "1"},
@@ -86,6 +106,19 @@ double smallest_gap(const State& state)
   return smallest;
 }
 
+void append_cavities(const State& state, const StepReport& report,
+                     std::vector<std::vector<double>>& row)
+{
+  for (const cavity::CavityReport& cavity : report.cavities)
+    for (double value : {cavity.pressure, cavity.volume, cavity.error,
+                         static_cast<double>(cavity.iterations), cavity.alarm ? 1.0 : 0.0})
+      row.push_back({value});
+  for (const cavity::EdgeState& edge : state.cavities.edge)
+    for (double value : {edge.flow, edge.moved, edge.needle_in ? 2.0 : edge.pierced ? 1.0 : 0.0})
+      row.push_back({value});
+  for (const Vec3& force : report.tools) row.push_back(components(force));
+}
+
 /// What the step took.
 void append_work(const Simulation& simulation, const StepReport& report, double build_seconds,
                  double seconds, std::vector<std::vector<double>>& row)
@@ -121,6 +154,7 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
                            {static_cast<double>(points.size())},
                            {static_cast<double>(slipping)}});
   }
+  append_cavities(state, report, row);
   if (simulation.scenario().output.energy) {
     const EnergyAccount& e = state.energy;
     for (double value :
@@ -228,6 +262,12 @@ void Recorder::record(const Simulation& simulation, const State& state, const St
     if (report.nonunique) notes.emplace_back("lambda_nonunique");
     results_->write_fields(step, state.t, fields, notes);
   });
+}
+
+void Recorder::table(const Simulation& simulation, const std::string& path,
+                     const std::vector<double>& values, const std::string& units)
+{
+  base::on_root(simulation.space().comm(), [&] { results_->write_table(path, values, units); });
 }
 
 void Recorder::close(const Simulation& simulation)

@@ -22,6 +22,9 @@ class Recorder
               double seconds, bool with_fields);
 
   /// Collective.
+  /// A dataset of its own in run.h5. Collective.
+  void table(const Simulation& simulation, const std::string& path,
+             const std::vector<double>& values, const std::string& units);
   void close(const Simulation& simulation);
 
  private:

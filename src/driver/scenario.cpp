@@ -5,6 +5,8 @@
 
 #include "core/csv.hpp"
 #include "core/words.hpp"
+#include "driver/boundary_options.hpp"
+#include "driver/cavity_options.hpp"
 #include "driver/compliance_options.hpp"
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
@@ -19,7 +21,10 @@ using core::Vec3;
 TimeSettings read_time(Options& options)
 {
   TimeSettings time;
-  time.analysis = options.text("analysis") == "static" ? Analysis::equilibrium : Analysis::dynamic;
+  const std::map<std::string, Analysis> analyses{{"dynamic", Analysis::dynamic},
+                                                 {"static", Analysis::equilibrium},
+                                                 {"pv_curve", Analysis::pv_curve}};
+  time.analysis = analyses.at(options.text("analysis"));
   time.step = options.real("time_step");
   time.end = options.real("time_end");
   time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
@@ -41,63 +46,6 @@ std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh&
     materials.push_back(m);
   }
   return materials;
-}
-
-std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
-{
-  std::vector<tissue::BoundaryConditions::Fixed> fixed;
-  for (const std::string& entry : options.names("fix")) {
-    const auto colon = entry.find(':');
-    tissue::BoundaryConditions::Fixed one{entry.substr(0, colon), 7};
-    if (colon != std::string::npos) {
-      one.axes = 0;
-      for (char axis : entry.substr(colon + 1)) {
-        if (axis < 'x' || axis > 'z')
-          throw core::option_error("option -fix: '" + entry + "': axes are letters of xyz");
-        one.axes |= 1U << (axis - 'x');
-      }
-    }
-    fixed.push_back(one);
-  }
-  return fixed;
-}
-
-tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mesh,
-                                         const base::Comm& comm)
-{
-  tissue::BoundaryConditions boundary;
-  boundary.gravity = options.vector("gravity");
-  boundary.fixed = read_fixed(options);
-  std::set<std::string> groups = options.groups_given("boundary_<surf>_displacement");
-  for (const char* pattern : {"boundary_<surf>_traction", "boundary_<surf>_curve"})
-    for (const std::string& group : options.groups_given(pattern)) groups.insert(group);
-  for (const std::string& group : groups) {
-    const bool moves = options.given("boundary_<surf>_displacement", group);
-    const bool pulls = options.given("boundary_<surf>_traction", group);
-    const std::string file = options.text("boundary_<surf>_curve", group);
-    std::optional<core::Csv> curve;
-    if (!file.empty()) {
-      if (!moves && !pulls)
-        throw core::option_error("option -boundary_" + group +
-                                 "_curve: the group has neither displacement nor traction");
-      curve = read_csv(file, comm);
-      core::require_time_column(*curve);
-      if (curve->columns.size() != 2)
-        throw core::data_error(file + ": columns must be time,factor");
-    }
-    if (moves) {
-      mesh::group_nodes(mesh, group);
-      boundary.displacements.push_back(
-          {group, options.vector_or_free("boundary_<surf>_displacement", group), curve});
-    }
-    if (pulls) {
-      mesh::surface_group(mesh, group);
-      boundary.tractions.push_back(
-          {group, options.vector("boundary_<surf>_traction", group), curve});
-    }
-  }
-  for (const auto& fixed : boundary.fixed) mesh::group_nodes(mesh, fixed.group);
-  return boundary;
 }
 
 tissue::TissueSettings read_tissue(Options& options, const mesh::Mesh& mesh, const base::Comm& comm)
@@ -265,12 +213,14 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.check_only = options.flag("check");
   const std::string file = options.text("mesh");
   if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");
-  scenario.mesh = io::read_gmsh(file, options.real("mesh_scale"), comm);
+  scenario.mesh =
+      with_cavities_hollow(options, io::read_gmsh(file, options.real("mesh_scale"), comm));
   scenario.tissue = read_tissue(options, scenario.mesh, comm);
   scenario.insertion = read_insertion(options, scenario.mesh);
   refuse_dashpots_without_time(scenario);
   read_compliance(options, scenario);
   add_needles(options, scenario, comm);
+  read_cavities(options, scenario, comm);
   options.refuse_unread();
   add_warnings(scenario);
   return scenario;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/comm.hpp"
+#include "cavity/settings.hpp"
 #include "core/options.hpp"
 #include "insertion/insertion.hpp"
 #include "law/compare.hpp"
@@ -14,7 +15,7 @@
 
 namespace trocar::driver {
 
-enum class Analysis { dynamic, equilibrium };
+enum class Analysis { dynamic, equilibrium, pv_curve };
 
 struct TimeSettings
 {
@@ -24,6 +25,15 @@ struct TimeSettings
   bool start_in_equilibrium = false;
   int newton_max = 1;     ///< linearisations per dynamic step
   int direction_max = 1;  ///< updates of the constraint directions per linearisation
+};
+
+/// A P-V curve: equilibria with a cavity held at volumes between two parts of that of the mesh.
+struct PvSettings
+{
+  int cavity = 0;
+  double low = 0.7, high = 1.3;
+  int points = 25;
+  int pieces = 4;  ///< of the second fit
 };
 
 struct OutputSettings
@@ -46,6 +56,8 @@ struct Scenario
   tissue::TissueSettings tissue;
   std::vector<needle::NeedleSettings> needles;
   insertion::InsertionSettings insertion;
+  cavity::Settings cavities;
+  PvSettings pv;
   law::Settings laws;
   std::vector<law::Contender> compare;  ///< solvers to be timed beside it
   OutputSettings output;

@@ -21,8 +21,10 @@ Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
       space_(scenario.mesh, mesh::partition_nodes(scenario.mesh, comm), comm),
       tissue_(scenario.mesh, space_, scenario.tissue, ledger_)
 {
-  if (scenario.time.analysis == Analysis::equilibrium || scenario.time.start_in_equilibrium)
+  if (scenario.time.analysis != Analysis::dynamic || scenario.time.start_in_equilibrium)
     tissue::require_supports(tissue_.fixed(), scenario.mesh);
+  if (!scenario.cavities.cavities.empty())
+    cavities_.emplace(scenario.mesh, space_, scenario.cavities, ledger_);
   for (const needle::NeedleSettings& settings : scenario.needles) needles_.emplace_back(settings);
   if (needles_.empty()) return;
   locator_.emplace(scenario.mesh);
@@ -32,7 +34,7 @@ Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
 void Simulation::prepare()
 {
   const bool is_static =
-      scenario_.time.analysis == Analysis::equilibrium || scenario_.time.start_in_equilibrium;
+      scenario_.time.analysis != Analysis::dynamic || scenario_.time.start_in_equilibrium;
   tissue_.prepare({0.0, scenario_.time.step, is_static});
 }
 
@@ -44,12 +46,16 @@ StepResult Simulation::initial_state()
     state.needles.push_back(needle.initial());
     state.insertions.push_back(insertion_->start(needle));
   }
-  if (scenario_.time.start_in_equilibrium || scenario_.time.analysis == Analysis::equilibrium)
+  if (cavities_) state.cavities = cavities_->start();
+  if (scenario_.time.start_in_equilibrium || scenario_.time.analysis != Analysis::dynamic)
     return equilibrium(state, {0.0, scenario_.time.step, true});
   StepResult result{state, {}, {}};
   for (std::size_t i = 0; i < needles_.size(); ++i)
     result.report.needles.push_back(
         {state.needles[i].shaft.tip(), insertion_->depth(state.insertions[i]), {}, {}});
+  if (cavities_)
+    result.report.cavities = cavities_->accept(result.state->cavities, state.tissue.u, {});
+  result.report.tools.assign(scenario_.tissue.boundary.displacements.size(), Vec3::Zero());
   return result;
 }
 
@@ -78,18 +84,20 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
   next.t = now.t;
   // 1 events, decided before and frozen during the solve
   if (const auto trouble = move_needles(old, next)) return StepResult::rejected(*trouble);
+  if (cavities_ && now.t > 0.0) advance_cavities(old, next);
   StepReport report;
-  const int most = now.is_static ? most_linearisations : scenario_.time.newton_max;
+  const bool to_tolerance = now.is_static || (cavities_ && cavities_->follows());
+  const int most = to_tolerance ? most_linearisations : scenario_.time.newton_max;
   double residual = std::numeric_limits<double>::infinity();
   core::VecX last;  // multipliers, to go on from
   for (int iteration = 1; iteration <= most; ++iteration) {
     const fem::OwnedField iterate = most > 1 ? next.tissue.u : fem::OwnedField{};
     const double last_residual = residual;
-    const Pass pass = linearised_step(old, now, next, last, report);  // 2 to 5
+    const Pass pass = linearised_step(old, now, residual, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
     if (most == 1 || balanced(old, next, now, pass, residual)) {
-      accept(pass, next, report);
+      accept(old, now, pass, next, report);
       if (scenario_.output.energy) account(old, now, pass, report, next);
       return {std::move(next), std::move(report), {}};
     }
@@ -106,16 +114,20 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
 // The step of both papers: every body moves freely, the rows that couple them are solved in one
 // small dense problem, and the bodies are corrected by it.
 Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeStep& now,
-                                             State& next, core::VecX& last, StepReport& report)
+                                             double residual, State& next, core::VecX& last,
+                                             StepReport& report)
 {
   Pass pass;
+  fem::Load load;
+  if (cavities_) load = cavities_->load(next.cavities, walls(next), now);
   const tissue::FreeMotion tissue =
-      tissue_.free_motion(old.tissue, next.tissue.u, now);  // 2 each body alone
+      tissue_.free_motion(old.tissue, next.tissue.u, now, load);  // 2 each body alone
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
   for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
-    pass = constrained_step(old, now, tissue, next, last, report);  // 3 to 5
+    pass = constrained_step(old, now, tissue, lag_tolerance(now, residual), next, last,
+                            report);  // 3 to 5
     if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
   }
@@ -144,6 +156,23 @@ std::optional<std::string> Simulation::move_needles(const State& old, State& nex
   return std::nullopt;
 }
 
+void Simulation::advance_cavities(const State& old, State& next) const
+{
+  std::vector<cavity::Tip> tips;
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    const insertion::InsertionState& insertion = next.insertions[i];
+    cavity::Tip tip{next.needles[i].shaft.tip(), true, insertion.tip_arc, 0.0, 0.0};
+    for (const insertion::Piece& piece : insertion.path.pieces) {
+      if (piece.begin > insertion.tip_arc) break;
+      tip.in_tissue = piece.tet >= 0;
+      tip.wall_arc = piece.begin;
+    }
+    tip.channel = insertion::tissue_length(insertion.path, tip.wall_arc);
+    tips.push_back(tip);
+  }
+  next.cavities = cavities_->advance(old.cavities, old.t, next.t, tips, old.tissue.u);
+}
+
 Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const State& state) const
 {
   Rows rows;
@@ -165,8 +194,8 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
   double scale = 0.0;
   fem::OwnedField r = tissue_.residual(old.tissue, next.tissue.u, now, scale);
   const bool pushed = pass.lambda.lambda.size() > 0;
-  if (pushed) {
-    fem::OwnedField forces = solve::spread(pass.probes, pass.forces, space_);
+  if (pushed || cavities_) {
+    fem::OwnedField forces = all_forces(pass, next, now);
     tissue_.fixed().clear(forces);
     r.value += forces.value;
     scale += space_.norm(forces);
@@ -180,6 +209,8 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
     residual = std::max(residual, needles_[i].relative_increment(again, lever));
   }
   if (!(residual <= balance_tolerance)) return false;
+  if (cavities_ && !cavities_->closed(next.cavities, cavities_->shape(next.tissue.u), now))
+    return false;
   return gaps_closed(now, next, pass);
 }
 
@@ -196,12 +227,20 @@ bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const
   return true;
 }
 
-void Simulation::accept(const Pass& pass, State& next, StepReport& report) const
+void Simulation::accept(const State& old, const core::TimeStep& now, const Pass& pass, State& next,
+                        StepReport& report) const
 {
+  if (!scenario_.tissue.boundary.displacements.empty())
+    report.tools = tissue_.tool_forces(old.tissue, next.tissue.u, now, all_forces(pass, next, now));
+  if (cavities_) {
+    report.cavities = cavities_->accept(next.cavities, next.tissue.u, now);
+    for (cavity::CavityReport& cavity : report.cavities)
+      cavity.iterations = std::max(report.linearisations, report.pressure_updates);
+  }
   std::optional<fem::GlobalField> u;  // gathered only when a tip does something
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     NeedleReport& needle = report.needles[i];
-    if (!pass.rows.set.empty())
+    if (!pass.rows.of_needle.empty())
       needle.coupling = insertion_->accept(next.insertions[i], pass.rows.of_needle[i], pass.lambda);
     if (needle.coupling.tip != insertion::TipOutcome::holds) {
       if (!u) u = space_.gather(next.tissue.u);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cavity/cavities.hpp"
 #include "constraint/reduce.hpp"
 #include "driver/scenario.hpp"
 #include "mesh/partition.hpp"
@@ -36,7 +38,8 @@ struct State
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
-  EnergyAccount energy;                               ///< kept with -output_energy only
+  cavity::State cavities;
+  EnergyAccount energy;  ///< kept with -output_energy only
 };
 
 /// What one needle did in a step.
@@ -52,6 +55,9 @@ struct NeedleReport
 struct StepReport
 {
   std::vector<NeedleReport> needles;
+  std::vector<cavity::CavityReport> cavities;
+  std::vector<Vec3> tools;   ///< force of every prescribed displacement on the tissue [N]
+  int pressure_updates = 0;  ///< of frozen cavities
   int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
   double residual = 0.0;                   ///< worst of the step [m]
   double condition = 0.0;                  ///< see law::Multipliers
@@ -107,6 +113,8 @@ class Simulation
   const tissue::Tissue& tissue() const { return tissue_; }
   tissue::Tissue& tissue() { return tissue_; }
   const std::vector<needle::Needle>& needles() const { return needles_; }
+  const std::optional<cavity::Cavities>& cavities() const { return cavities_; }
+  std::optional<cavity::Cavities>& cavities() { return cavities_; }
   /// See Insertion::tributary_lengths [m].
   core::MatX tributary(const insertion::InsertionState& state) const
   {
@@ -118,12 +126,14 @@ class Simulation
   {
     constraint::Set set;
     std::vector<insertion::CouplingRows> of_needle;
+    cavity::CavityRows of_cavities;
   };
   /// One linearisation: its rows and what they answered.
   struct Pass
   {
     Rows rows;
     std::optional<std::string> trouble;  ///< why the step cannot be taken; agreed by all ranks
+    law::Problem problem;
     law::Multipliers lambda;
     bool same_laws = false;                      ///< every row holds or slips as in the pass before
     std::vector<constraint::SmallBody> needles;  ///< as the rows feel them
@@ -133,22 +143,29 @@ class Simulation
     solve::Probes probes;                        ///< tissue nodes that the rows hold
     core::VecX forces;                           ///< Ĥᵀλ on them [N]
     std::vector<core::VecX> levers;              ///< H_nᵀλ on each needle
+    double tolerance = 0.0;                      ///< of an approach, see lag_tolerance
   };
 
-  Pass linearised_step(const State& old, const core::TimeStep& now, State& next, core::VecX& last,
-                       StepReport& report);
+  Pass linearised_step(const State& old, const core::TimeStep& now, double residual, State& next,
+                       core::VecX& last, StepReport& report);
   Pass constrained_step(const State& old, const core::TimeStep& now,
-                        const tissue::FreeMotion& tissue, State& next, core::VecX& last,
-                        StepReport& report);
+                        const tissue::FreeMotion& tissue, double tolerance, State& next,
+                        core::VecX& last, StepReport& report);
+  void meet_frozen_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
+                        const core::VecX& last, Pass& pass, State& next, StepReport& report);
+  const std::vector<fem::OwnedField>& unit_answers(const cavity::State& state,
+                                                   const core::TimeStep& now);
+  fem::OwnedField needle_forces(const Pass& pass) const;
+  fem::OwnedField all_forces(const Pass& pass, const State& next, const core::TimeStep& now) const;
+  void advance_cavities(const State& old, State& next) const;
+  cavity::Shape walls(const State& state) const;
   bool gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const;
   std::optional<std::string> move_needles(const State& old, State& next) const;
   Rows coupling_rows(const core::TimeStep& now, const State& state) const;
-  void meet_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                 const fem::OwnedField& start, const core::VecX& last, Pass& pass,
-                 fem::OwnedField& u, StepReport& report);
-  void meet_stale_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
-                       const fem::OwnedField& start, const core::VecX& last, Pass& pass,
-                       fem::OwnedField& u, StepReport& report);
+  void meet_laws(const tissue::FreeMotion& tissue, const fem::OwnedField& start,
+                 const core::VecX& last, Pass& pass, fem::OwnedField& u, StepReport& report);
+  void meet_stale_laws(const tissue::FreeMotion& tissue, const fem::OwnedField& start,
+                       const core::VecX& last, Pass& pass, fem::OwnedField& u, StepReport& report);
   void get_compliance(Pass& pass, StepReport& report);
   std::optional<std::string> solve_constraints(const core::VecX& free, const core::VecX& start,
                                                Pass& pass, StepReport& report);
@@ -157,10 +174,11 @@ class Simulation
                StepReport& report);
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
   tissue::Push push_of(const Pass& pass) const;
-  double lag_tolerance(const core::TimeStep& now) const;
+  double lag_tolerance(const core::TimeStep& now, double residual) const;
   bool balanced(const State& old, const State& next, const core::TimeStep& now, const Pass& pass,
                 double& residual) const;
-  void accept(const Pass& pass, State& next, StepReport& report) const;
+  void accept(const State& old, const core::TimeStep& now, const Pass& pass, State& next,
+              StepReport& report) const;
   void account(const State& old, const core::TimeStep& now, const Pass& pass,
                const StepReport& report, State& next) const;
 
@@ -171,6 +189,9 @@ class Simulation
   std::vector<needle::Needle> needles_;
   std::optional<mesh::Locator> locator_;           ///< only with needles
   std::optional<insertion::Insertion> insertion_;  ///< only with needles
+  std::optional<cavity::Cavities> cavities_;       ///< only with cavities
+  /// Displacement per unit pressure of frozen cavities, by operator (1/h) [m/Pa].
+  std::map<double, std::vector<fem::OwnedField>> unit_answers_;
 };
 
 }  // namespace trocar::driver

@@ -163,6 +163,13 @@ void Results::write_xdmf() const
   write_atomically(folder_ + "/run.xdmf", x.str());
 }
 
+void Results::write_table(const std::string& path, const std::vector<double>& values,
+                          const std::string& units)
+{
+  run_.write(path, values, 0, units);
+  run_.flush();
+}
+
 void Results::close()
 {
   run_.close();

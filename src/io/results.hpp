@@ -52,6 +52,9 @@ class Results
   /// A field file for this time; `step` counts accepted steps.
   void write_fields(int step, double time, const std::vector<Field>& fields,
                     const std::vector<std::string>& notes);
+  /// A dataset of its own in run.h5, once the run is over.
+  void write_table(const std::string& path, const std::vector<double>& values,
+                   const std::string& units);
   void close();
 
  private:

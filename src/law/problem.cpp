@@ -38,6 +38,20 @@ int place(RowKind kind, double bound, double lambda)
 
 }  // namespace
 
+VecX response(const Problem& problem, const VecX& lambda, const VecX& dg)
+{
+  std::vector<int> held;
+  for (int i = 0; i < static_cast<int>(problem.rows()); ++i)
+    if (place(problem.kind[static_cast<std::size_t>(i)], problem.bound[i], lambda[i]) == 0)
+      held.push_back(i);
+  VecX change = VecX::Zero(problem.rows());
+  if (held.empty()) return change;
+  MatX W = problem.W(held, held);
+  if (problem.softness.size() > 0) W.diagonal() += problem.softness(held);
+  change(held) = -W.completeOrthogonalDecomposition().solve(dg(held).eval());
+  return change;
+}
+
 bool same_states(const Problem& problem, const VecX& a, const VecX& b)
 {
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {

@@ -74,6 +74,9 @@ struct Multipliers
 /// another multiplier: between them the problem is linear.
 bool same_states(const Problem& problem, const VecX& a, const VecX& b);
 
+/// ∂λ/∂g · dg at a solution [N]: rows that hold go on holding, those at their bounds stay there.
+VecX response(const Problem& problem, const VecX& lambda, const VecX& dg);
+
 /// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
 /// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes).
 /// Rows with W_ii = 0 cannot move and do not count.

@@ -50,7 +50,7 @@ void KspCompliance::forget()
   columns_.clear();
   first_slot_of_node_.clear();
   slot_of_wide_.clear();
-  wide_vectors_.clear();
+  wides_.clear();
   C_.resize(0, 0);
   version_ = system_->version();
 }
@@ -96,13 +96,17 @@ std::vector<int> KspCompliance::slots_of(const Probes& probes, std::vector<int>&
   }
   for (const WideProbe* wide : probes.wide) {
     const auto [entry, fresh] = slot_of_wide_.emplace(wide->id, static_cast<int>(columns_.size()));
-    if (fresh) {
-      OwnedField vector = wide->vector;
-      fixed_->clear(vector);
-      wide_vectors_.emplace(wide->id, std::move(vector));
-      add_column({-1, 0, wide, false});
-    }
     slots.push_back(entry->second);
+    if (!fresh && wides_.at(wide->id).version == wide->version) continue;
+    OwnedField vector = wide->vector;
+    fixed_->clear(vector);
+    wides_.insert_or_assign(wide->id, Wide{wide->version, std::move(vector)});
+    if (fresh)
+      add_column({-1, 0, wide, false});
+    else {
+      columns_[static_cast<std::size_t>(entry->second)].wide = wide;
+      missing.push_back(entry->second);
+    }
   }
   const auto size = static_cast<Eigen::Index>(columns_.size());
   C_.conservativeResizeLike(core::MatX::Zero(size, size));
@@ -117,7 +121,7 @@ core::MatX KspCompliance::right_hand_sides(const std::vector<int>& slots) const
     const Column& column = columns_[static_cast<std::size_t>(slots[k])];
     const auto c = static_cast<Eigen::Index>(k);
     if (column.wide) {
-      rhs.col(c) = wide_vectors_.at(column.wide->id).value;
+      rhs.col(c) = wides_.at(column.wide->id).vector.value;
     } else {
       const int local = space.owned_local(column.node);
       if (local >= 0) rhs(3 * local + column.axis, c) = 1.0;
@@ -135,7 +139,7 @@ core::MatX KspCompliance::read_at_probes(const core::MatX& columns) const
     if (local >= 0) read.middleRows<3>(slot) = columns.middleRows<3>(3 * local);
   }
   for (const auto& [id, slot] : slot_of_wide_)
-    read.row(slot) = wide_vectors_.at(id).value.transpose() * columns;
+    read.row(slot) = wides_.at(id).vector.value.transpose() * columns;
   TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, read.data(), static_cast<int>(read.size()), MPI_DOUBLE,
                            MPI_SUM, space.comm().get()));
   return read;

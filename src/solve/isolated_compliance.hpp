@@ -10,12 +10,13 @@
 
 namespace trocar::solve {
 
-/// A probe that touches many dofs, such as the volume gradient of a cavity. `id` changes when the
-/// vector does.
+/// A probe that touches many dofs, such as the volume gradient of a cavity. Its column is kept
+/// until one of the same `id` comes with another `version`.
 struct WideProbe
 {
   long long id;
   OwnedField vector;
+  long long version = 0;
 };
 
 /// What a constraint set asks for: whole nodes (three unit dofs each, file numbering, sorted and
@@ -111,7 +112,12 @@ class KspCompliance final : public IsolatedCompliance
   std::vector<Column> columns_;            ///< by slot
   std::map<int, int> first_slot_of_node_;  ///< file node -> slot of its x dof
   std::map<long long, int> slot_of_wide_;
-  std::map<long long, OwnedField> wide_vectors_;  ///< copies: old wide rows meet new columns
+  struct Wide
+  {
+    long long version;
+    OwnedField vector;  ///< a copy: old wide rows meet new columns
+  };
+  std::map<long long, Wide> wides_;
   core::MatX C_;
 };
 

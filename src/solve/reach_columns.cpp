@@ -211,28 +211,6 @@ MatX ReachColumns::add_units(const std::vector<int>& positions)
   return rest;
 }
 
-VecX ReachColumns::add_dense(const VecX& vector)
-{
-  const int slot = size_;
-  enlarge(1);
-  VecX y = vector;
-  factor_->forward(y);
-  C_(slot, slot) = y.head(factor_->closed()).squaredNorm();
-  for (int s = 0; s < factor_->supernodes(); ++s) {
-    const SupernodalFactor::Supernode node = factor_->supernode(s);
-    const MatX own = y.segment(node.first, node.columns);
-    if (own.isZero(0.0)) continue;
-    const VecX products = values(s).transpose() * own;
-    const Piece& piece = pieces_[static_cast<std::size_t>(s)];
-    for (std::size_t k = 0; k < piece.slot.size(); ++k) {
-      C_(slot, piece.slot[k]) += products[static_cast<Eigen::Index>(k)];
-      C_(piece.slot[k], slot) = C_(slot, piece.slot[k]);
-    }
-    append(s, own, &slot);
-  }
-  return y.tail(factor_->size() - factor_->closed());
-}
-
 VecX ReachColumns::at(const VecX& y) const
 {
   VecX result = VecX::Zero(size_);

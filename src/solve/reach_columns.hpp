@@ -21,8 +21,6 @@ class ReachColumns
   /// Adds unit vectors at these closed positions; -1 makes a column of zeros. Their slots follow
   /// on. Gives what they leave at the open places (open x positions).
   core::MatX add_units(const std::vector<int>& positions);
-  /// Adds one dense vector (by position) and gives what is left of it at the open places.
-  core::VecX add_dense(const core::VecX& vector);
 
   /// C of these slots.
   core::MatX block(const std::vector<int>& slots) const { return C_(slots, slots); }

@@ -257,4 +257,13 @@ void SupernodalStepSolver::gather_open_blocks(const core::VecX& sums, core::MatX
   }
 }
 
+std::string SupernodalStepSolver::describe() const
+{
+  return "supernodal cholesky (cholmod, factor " +
+         std::to_string(static_cast<long long>(bytes_ / 1e6)) + " MB" +
+         (pinned_ > 0 ? ", " + std::to_string(pinned_) + " nodes pinned" : "") +
+         (interface_.empty() ? ")"
+                             : ", ranks share " + std::to_string(interface_.size()) + " dofs)");
+}
+
 }  // namespace trocar::solve

@@ -12,15 +12,14 @@ void SupernodalStepSolver::forget_columns()
     columns_.emplace(*factor_);
   interface_block_.forget_columns();
   first_slot_of_node_.clear();
-  slot_of_wide_.clear();
+  wides_.clear();
   slots_ = 0;
 }
 
 void SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
 {
   R_ = R;
-  // Columns of single nodes turn with them; those of wide vectors do not.
-  if (!slot_of_wide_.empty()) forget_columns();
+  wides_.clear();  // columns of single nodes turn with them; those of wide vectors do not
 }
 
 OwnedField SupernodalStepSolver::turned_back(const OwnedField& field) const
@@ -72,20 +71,26 @@ core::VecX SupernodalStepSolver::sum_on_root(const core::VecX& values) const
 HalfSolution SupernodalStepSolver::begin(const OwnedField& b)
 {
   if (!reuse_) forget_columns();
+  ++ledger_->half_sweeps;
+  return forward(b, !R_.empty());
+}
+
+/// L⁻¹ Rᵀ b.
+HalfSolution SupernodalStepSolver::forward(const OwnedField& b, bool single)
+{
   const OwnedField back = turned_back(b);
   HalfSolution half{mine(back), {}};
-  if (factor_) R_.empty() ? factor_->forward(half.value) : factor_->forward_single(half.value);
+  if (factor_) single ? factor_->forward_single(half.value) : factor_->forward(half.value);
   if (!interface_.empty()) {
     half.interface = interface_part(back);
     add_left_over(half.value, half.interface);
     half.interface = sum_on_root(half.interface);
     if (space_->comm().root()) half.interface = interface_block_.forward(half.interface);
   }
-  ++ledger_->half_sweeps;
   return half;
 }
 
-/// Slots of the probes; columns that are not there yet are made.
+/// Slots of the probed nodes; columns that are not there yet are made, those of wide probes too.
 std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, ComplianceReport& report)
 {
   std::vector<int> slots, fresh;
@@ -101,17 +106,21 @@ std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, Compliance
     }
   }
   if (!fresh.empty()) add_nodes(fresh);
+  add_wides(probes, report);
+  return slots;
+}
+
+void SupernodalStepSolver::add_wides(const Probes& probes, ComplianceReport& report)
+{
   for (const WideProbe* wide : probes.wide) {
-    const auto [entry, is_fresh] = slot_of_wide_.emplace(wide->id, slots_);
-    slots.push_back(entry->second);
+    const auto known = wides_.find(wide->id);
+    const bool is_fresh = known == wides_.end() || known->second.version != wide->version;
     ++(is_fresh ? report.built : report.reused);
     if (!is_fresh) continue;
-    ++slots_;
     OwnedField vector = wide->vector;
     fixed_->clear(vector);
-    add_wide(turned_back(vector));
+    wides_.insert_or_assign(wide->id, Wide{wide->version, forward(vector, false)});
   }
-  return slots;
 }
 
 void SupernodalStepSolver::add_nodes(const std::vector<int>& nodes)
@@ -135,18 +144,6 @@ void SupernodalStepSolver::add_nodes(const std::vector<int>& nodes)
     for (std::size_t k = 0; k < open_.size(); ++k)
       interface.row(open_[k]) +=
           rest.row(factor_->position(factor_->closed() + static_cast<int>(k)) - factor_->closed());
-  }
-  add_to_interface(interface);
-}
-
-void SupernodalStepSolver::add_wide(const OwnedField& vector)
-{
-  core::MatX interface = interface_part(vector);
-  if (columns_) {
-    const core::VecX rest = columns_->add_dense(mine(vector));
-    for (std::size_t k = 0; k < open_.size(); ++k)
-      interface(open_[k], 0) +=
-          rest[factor_->position(factor_->closed() + static_cast<int>(k)) - factor_->closed()];
   }
   add_to_interface(interface);
 }
@@ -186,9 +183,16 @@ core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& r
   report = {};
   report.probes = probes.size();
   const std::vector<int> slots = slots_of(probes, report);
+  const auto nodal = static_cast<Eigen::Index>(slots.size());
   core::MatX C = core::MatX::Zero(probes.size(), probes.size());
-  if (columns_) C = columns_->block(slots);
-  if (space_->comm().root() && !interface_.empty()) C += interface_block_.block(slots);
+  if (columns_) C.topLeftCorner(nodal, nodal) = columns_->block(slots);
+  if (space_->comm().root() && !interface_.empty())
+    C.topLeftCorner(nodal, nodal) += interface_block_.block(slots);
+  for (std::size_t k = 0; k < probes.wide.size(); ++k) {
+    const Eigen::Index column = nodal + static_cast<Eigen::Index>(k);
+    C.col(column) = read_here(probes, slots, wides_.at(probes.wide[k]->id).half);
+    C.row(column) = C.col(column).transpose();
+  }
   if (space_->comm().size() > 1)
     TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, C.data(), static_cast<int>(C.size()), MPI_DOUBLE,
                              MPI_SUM, space_->comm().get()));
@@ -201,15 +205,33 @@ core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& r
   return C;
 }
 
+/// This rank's share of Xᵀ y by slot of the probes.
+core::VecX SupernodalStepSolver::read_here(const Probes& probes, const std::vector<int>& slots,
+                                           const HalfSolution& half) const
+{
+  const auto nodal = static_cast<Eigen::Index>(slots.size());
+  core::VecX read = core::VecX::Zero(probes.size());
+  const bool has_interface = space_->comm().root() && !interface_.empty();
+  core::VecX by_slot = core::VecX::Zero(slots_);
+  if (columns_) by_slot = columns_->at(half.value);
+  if (has_interface) by_slot += interface_block_.at(half.interface);
+  for (Eigen::Index k = 0; k < nodal; ++k) read[k] = by_slot[slots[static_cast<std::size_t>(k)]];
+  const Eigen::Index closed = factor_ ? factor_->closed() : 0;
+  for (std::size_t k = 0; k < probes.wide.size(); ++k) {
+    const HalfSolution& wide = wides_.at(probes.wide[k]->id).half;
+    double& product = read[nodal + static_cast<Eigen::Index>(k)];
+    product = wide.value.head(closed).dot(half.value.head(closed));
+    if (has_interface) product += wide.interface.dot(half.interface);
+  }
+  return read;
+}
+
 core::VecX SupernodalStepSolver::at(const Probes& probes, const HalfSolution& half)
 {
   ComplianceReport report;
   const std::vector<int> slots = slots_of(probes, report);
   ledger_->columns_built += report.built;
-  core::MatX read = core::MatX::Zero(probes.size(), 1);
-  if (columns_) read = columns_->at(half.value)(slots);
-  if (space_->comm().root() && !interface_.empty())
-    read.col(0) += interface_block_.at(half.interface)(slots);
+  core::MatX read = read_here(probes, slots, half);
   if (space_->comm().size() > 1)
     TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, read.data(), static_cast<int>(read.size()), MPI_DOUBLE,
                              MPI_SUM, space_->comm().get()));
@@ -226,9 +248,18 @@ OwnedField SupernodalStepSolver::finish(const HalfSolution& half, const Probes& 
     const std::vector<int> slots = slots_of(probes, report);
     ledger_->columns_built += report.built;
     core::VecX by_slot = core::VecX::Zero(slots_);
-    by_slot(slots) = turned_back(probes, f);
+    const core::VecX back = turned_back(probes, f);
+    for (std::size_t k = 0; k < slots.size(); ++k)
+      by_slot[slots[k]] = back[static_cast<Eigen::Index>(k)];
     if (columns_) columns_->push(by_slot, y);
-    if (space_->comm().root() && !interface_.empty()) interface_block_.push(by_slot, interface);
+    const bool has_interface = space_->comm().root() && !interface_.empty();
+    if (has_interface) interface_block_.push(by_slot, interface);
+    for (std::size_t k = 0; k < probes.wide.size(); ++k) {
+      const HalfSolution& wide = wides_.at(probes.wide[k]->id).half;
+      const double force = back[static_cast<Eigen::Index>(slots.size() + k)];
+      y += force * wide.value;
+      if (has_interface) interface += force * wide.interface;
+    }
   }
   if (!interface_.empty()) {
     if (space_->comm().root()) interface = interface_block_.backward(interface);
@@ -257,15 +288,6 @@ OwnedField SupernodalStepSolver::assembled(const core::VecX& y, const core::VecX
   for (int local = 0; local < space_->owned(); ++local)
     field.node(local) = (turned(space_->file_node(local)) * field.node(local)).eval();
   return field;
-}
-
-std::string SupernodalStepSolver::describe() const
-{
-  return "supernodal cholesky (cholmod, factor " +
-         std::to_string(static_cast<long long>(bytes_ / 1e6)) + " MB" +
-         (pinned_ > 0 ? ", " + std::to_string(pinned_) + " nodes pinned" : "") +
-         (interface_.empty() ? ")"
-                             : ", ranks share " + std::to_string(interface_.size()) + " dofs)");
 }
 
 }  // namespace trocar::solve

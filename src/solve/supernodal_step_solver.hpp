@@ -47,7 +47,10 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
 
   std::vector<int> slots_of(const Probes& probes, ComplianceReport& report);
   void add_nodes(const std::vector<int>& nodes);
-  void add_wide(const OwnedField& vector);
+  void add_wides(const Probes& probes, ComplianceReport& report);
+  HalfSolution forward(const OwnedField& b, bool single);
+  core::VecX read_here(const Probes& probes, const std::vector<int>& slots,
+                       const HalfSolution& half) const;
   void add_to_interface(core::MatX& columns);
   OwnedField turned_back(const OwnedField& field) const;
   core::VecX turned_back(const Probes& probes, const core::VecX& f) const;
@@ -78,7 +81,12 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   std::optional<ReachColumns> columns_;     ///< with it
   InterfaceBlock interface_block_;          ///< on rank 0
   std::map<int, int> first_slot_of_node_;   ///< file node -> slot of its x dof
-  std::map<long long, int> slot_of_wide_;
+  struct Wide
+  {
+    long long version;
+    HalfSolution half;
+  };
+  std::map<long long, Wide> wides_;  ///< columns of the wide probes by id
   int slots_ = 0;
   std::vector<core::Mat3> R_;  ///< see `turn`
 };

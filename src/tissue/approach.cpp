@@ -28,15 +28,16 @@ void Tissue::factor(const std::vector<Mat3>& R)
 
 /// Begins where the velocity leads.
 void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                            const OwnedField& r, FreeMotion& motion)
+                            const OwnedField& r, const fem::Load& more, FreeMotion& motion)
 {
   Approach approach;
+  approach.stiffness = more.stiffness;
   OwnedField ahead = space_->zero();
   if (step.t > 0.0 && space_->comm().all(iterate.value == old.u.value)) {
     ahead.value = step.h * old.v.value;
     fixed_.clear(ahead);
   }
-  approach.residual = {r.value - values_.times(*space_, ahead).value};
+  approach.residual = {r.value - operate(approach, ahead).value};
   fixed_.clear(approach.residual);
   OwnedField load = r;
   fixed_.clear(load);
@@ -44,6 +45,14 @@ void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, c
   motion.base.value += ahead.value;
   approach.u = motion.base;
   motion.approach = std::move(approach);
+}
+
+/// A d with the present operator.
+OwnedField Tissue::operate(const Approach& approach, const OwnedField& d) const
+{
+  OwnedField product = values_.times(*space_, d);
+  if (approach.stiffness) product.value -= approach.stiffness(d).value;
+  return product;
 }
 
 void Tissue::start_from(FreeMotion& motion, const core::VecX& lambda, const OwnedField& forces)
@@ -72,11 +81,14 @@ FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
 void Tissue::give_up(FreeMotion& motion)
 {
   factor(current_->R);
-  const Approach& a = *motion.approach;
+  Approach& a = *motion.approach;
   motion.base = a.u;
   motion.pushed = a.lambda;
   motion.half = begin(a.residual);
-  motion.approach.reset();
+  a.passes = 0;
+  a.on_rows = false;
+  a.direction_energy = 0.0;
+  if (!a.stiffness) motion.approach.reset();
 }
 
 bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance)
@@ -86,7 +98,7 @@ bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push
   const bool rows = push.lambda.size() > 0;
   core::VecX more = push.lambda - a.lambda;
   OwnedField d{u.value - a.u.value};
-  OwnedField A_d = values_.times(*space_, d);
+  OwnedField A_d = operate(a, d);
   const OwnedField pushed = rows ? push.forces(more) : space_->zero();
   OwnedField rest{a.residual.value + pushed.value - A_d.value};
   double load = a.load;
@@ -104,15 +116,23 @@ bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push
     current_->sweeps += a.passes;
     return true;
   }
-  const bool leads_on = a.passes < most_passes + current_->solver->sweeps_per_factor();
-  if (!leads_on || !std::isfinite(left)) {
+  const double most =
+      lags() ? most_passes + current_->solver->sweeps_per_factor() : most_passes_of_own;
+  bool good = a.passes < most && std::isfinite(left);
+  if (good && rows && !(same_laws && a.on_rows))
+    change_rows(a, d, A_d, more, pushed, push, same_laws);
+  else if (good)
+    good = advance(a, std::move(d), std::move(A_d), std::move(more), push);
+  if (!good && lags()) {
     give_up(motion);
     return false;
   }
-  if (rows && !(same_laws && a.on_rows))
-    change_rows(a, d, A_d, more, pushed, push, same_laws);
-  else
-    advance(a, std::move(d), std::move(A_d), std::move(more), push);
+  if (!good) {
+    motion.trouble =
+        "no stable equilibrium under pressures that follow the tissue (limit point or buckling): "
+        "volume control passes limit points of the pressure";
+    return false;
+  }
   motion.base = a.u;
   motion.pushed = a.lambda;
   motion.half = begin(a.residual);
@@ -143,7 +163,8 @@ void Tissue::change_rows(Approach& a, const OwnedField& d, const OwnedField& A_d
 
 /// One step of conjugate gradients from a preconditioned direction d; needles and soft rows are
 /// part of the energy, because they move with the multipliers.
-void Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
+/// False when the energy has no minimum along it.
+bool Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
                      const Push& push) const
 {
   const bool rows = more.size() > 0;
@@ -156,6 +177,7 @@ void Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
     more += beta * a.lambda_direction;
   }
   a.direction_energy = space_->dot(d, A_d) + (rows ? push.yielding(more, more) : 0.0);
+  if (a.stiffness && !(a.direction_energy > 0.0)) return false;
   const double along = space_->dot(a.residual, d);
   const double step = a.direction_energy > 0.0 ? along / a.direction_energy : 1.0;
   a.u.value += step * d.value;
@@ -166,6 +188,7 @@ void Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
   a.direction = std::move(d);
   a.A_direction = std::move(A_d);
   a.lambda_direction = std::move(more);
+  return true;
 }
 
 }  // namespace trocar::tissue

@@ -17,8 +17,9 @@ struct Push
   bool same_laws = false;  ///< rows hold and slip as in the pass before, and no bound follows a row
 };
 
-/// The way to  A Δu = r + Hᵀλ, (δ, λ) in the laws  when the factor is that of an older operator P:
-/// conjugate gradients on the held rows, the pass of a step (one sweep with P, then the laws with
+/// The way to  A Δu = r + Hᵀλ, (δ, λ) in the laws  when the factor is not that of A but of P: of
+/// an older operator, or without the stiffness of loads that follow the tissue. It is by conjugate
+/// gradients on the held rows, the pass of a step (one sweep with P, then the laws with
 /// P's compliance) as their preconditioner. As long as rows change between holding and slipping it
 /// is the plain iteration u <- u + P⁻¹(rest).
 struct Approach
@@ -30,7 +31,9 @@ struct Approach
   core::VecX lambda_direction;
   double direction_energy = 0.0;  ///< of the last direction [J]; 0: none
   double load = 0.0;              ///< ‖r‖ [N]
-  bool on_rows = false;           ///< u meets the laws of all rows with `lambda`
+  /// ∂f/∂u of loads that follow, part of -A; empty: none.
+  std::function<fem::OwnedField(const fem::OwnedField&)> stiffness;
+  bool on_rows = false;  ///< u meets the laws of all rows with `lambda`
   int passes = 0;
 };
 

@@ -35,9 +35,10 @@ fem::OwnedField prescribed_displacement(const BoundaryConditions& conditions,
     for (int node : mesh::group_nodes(mesh, displacement.group)) {
       const int local = space.owned_local(node);
       if (local < 0) continue;
+      const Vec3& value =
+          displacement.field.empty() ? displacement.value : displacement.field.at(node);
       for (int axis = 0; axis < 3; ++axis)
-        if (!std::isnan(displacement.value[axis]))
-          target.value[3 * local + axis] = factor * displacement.value[axis];
+        if (!std::isnan(value[axis])) target.value[3 * local + axis] = factor * value[axis];
     }
   }
   return target;

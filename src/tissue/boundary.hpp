@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct PrescribedDisplacement
   std::string group;
   Vec3 value;                      ///< [m]
   std::optional<core::Csv> curve;  ///< factor over time (columns time, factor)
+  std::map<int, Vec3> field{};     ///< by file node, instead of `value` [m]
 };
 
 /// Traction on the undeformed physical surface (dead load).

@@ -31,6 +31,7 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
   for (const Traction& traction : settings_.boundary.tractions)
     traction_.push_back(
         traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
+  if (!settings_.boundary.displacements.empty()) find_tools();
 }
 
 void Tissue::assemble(const std::vector<Mat3>& R, double inverse_h)
@@ -111,7 +112,8 @@ OwnedField Tissue::external(const TimeStep& step) const
 }
 
 OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
-                          const TimeStep& step, double* scale) const
+                          const TimeStep& step, double* scale,
+                          const std::vector<std::size_t>* elements) const
 {
   const double inverse_h = step.inverse();
   const OwnedField rate{(u.value - old.u.value) * inverse_h};
@@ -120,7 +122,9 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const std
   const auto rate_g = space_->with_ghosts(rate);
   const auto acceleration_g = space_->with_ghosts(acceleration);
   OwnedField internal = space_->zero(), inertia = space_->zero();
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
+  const std::size_t count = elements ? elements->size() : elements_.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t e = elements ? (*elements)[k] : k;
     const auto& tet = space_->tets()[e];
     const fem::TetShape& shape = elements_[e].shape;
     const Material& m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
@@ -160,13 +164,14 @@ OwnedField Tissue::apply_operator(const OwnedField& d, const std::vector<Mat3>& 
 }
 
 FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
-                               const TimeStep& step)
+                               const TimeStep& step, const fem::Load& more)
 {
   if (!rotations(space_->with_ghosts(iterate), R_))
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
   use_operator(R_, step);
   const std::vector<Mat3>& R = R_;
   OwnedField r = forces(old, iterate, R, step, nullptr);
+  if (more.force.value.size() > 0) r.value += more.force.value;
 
   OwnedField prescribed = space_->zero();
   const OwnedField target = prescribed_displacement(settings_.boundary, *mesh_, *space_, step.t);
@@ -179,9 +184,10 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   }
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
   if (moves) r.value -= apply_operator(prescribed, R, step.inverse()).value;
+  if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
-  if (current_->older)
-    begin_approach(old, iterate, step, r, motion);
+  if (current_->older || more.stiffness)
+    begin_approach(old, iterate, step, r, more, motion);
   else
     motion.half = begin(r);
   return motion;
@@ -221,6 +227,13 @@ bool Tissue::possible(const OwnedField& u) const
     }
   }
   return space_->comm().all(good);
+}
+
+OwnedField Tissue::answer(const OwnedField& forces)
+{
+  OwnedField u = current_->solver->finish(begin(forces), {}, {});
+  fixed_.clear(u);
+  return u;
 }
 
 solve::HalfSolution Tissue::begin(const OwnedField& forces)

@@ -7,6 +7,7 @@
 
 #include "core/polar.hpp"
 #include "core/time_step.hpp"
+#include "fem/load.hpp"
 #include "mesh/mesh.hpp"
 #include "solve/step_solver.hpp"
 #include "tissue/approach.hpp"
@@ -69,6 +70,8 @@ class Tissue
  public:
   /// Passes of an approach, beside those that cost as much as a factor, before one is made.
   static constexpr int most_passes = 8;
+  /// Passes of one with a factor of its own, under loads that follow.
+  static constexpr int most_passes_of_own = 200;
 
   /// Borrows mesh, space and ledger. Collective.
   Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
@@ -77,9 +80,11 @@ class Tissue
   TissueState at_rest() const { return {space_->zero(), space_->zero()}; }
 
   /// Linearises at `iterate` within the step that began at `old` and solves for the motion without
-  /// constraints. Linear tissue keeps one assembled and factored operator per distinct h.
+  /// constraints, under loads that are linearised there as well; those that follow the tissue make
+  /// it an approach. Linear tissue keeps one assembled and factored operator per distinct h.
   /// Collective.
-  FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step);
+  FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
+                         const fem::Load& more = {});
 
   /// False when a displacement is not finite or turns a corotational element inside out.
   /// Collective.
@@ -99,10 +104,15 @@ class Tissue
   /// `free_motion`. Collective.
   FreeMotion pushed(const OwnedField& u, const OwnedField& forces);
   /// True when u is the answer to this linearisation; else `motion` becomes the next pass of the
-  /// approach to it. `tolerance`: of ‖r + Hᵀλ - AΔu‖ against ‖r‖ + ‖Hᵀλ‖. Collective.
+  /// approach to it, or has its trouble: no stable equilibrium under loads that follow.
+  /// `tolerance`: of ‖r + Hᵀλ - AΔu‖ against ‖r‖ + ‖Hᵀλ‖. Collective.
   bool converged(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance);
-  /// Factors the present operator and ends the approach with it, from where it stands. Collective.
+  /// Factors the present operator and goes on with it, from where the approach stands. Collective.
   void give_up(FreeMotion& motion);
+  /// The factor is that of an older operator.
+  bool lags() const { return current_->older; }
+  /// A⁻¹ f [m] for nodal forces f [N] with the operator of the last `free_motion`. Collective.
+  OwnedField answer(const OwnedField& forces);
   /// Counts the factors made: compliance columns of one version belong together.
   int factor_version() const { return factor_version_; }
   /// Linearisations that the factor has served.
@@ -117,6 +127,11 @@ class Tissue
   /// in balance although its round-off is as large as its forces. Collective.
   OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
                       double& scale) const;
+
+  /// Forces [N] by which every prescribed displacement of the boundary conditions holds the tissue
+  /// (x, y, z each), `more` being those of rows and cavities. Costs the elements there. Collective.
+  std::vector<Vec3> tool_forces(const TissueState& old, const OwnedField& u, const TimeStep& step,
+                                const OwnedField& more) const;
 
   /// Energy account of an accepted step; `push` is Hᵀλ. Only on request: an element loop more.
   /// Collective.
@@ -169,14 +184,17 @@ class Tissue
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
                                  const std::vector<Mat3>& R_factor) const;
   void begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                      const OwnedField& r, FreeMotion& motion);
+                      const OwnedField& r, const fem::Load& more, FreeMotion& motion);
   void change_rows(Approach& approach, const OwnedField& d, const OwnedField& A_d,
                    const core::VecX& more, const OwnedField& pushed, const Push& push,
                    bool same_laws) const;
-  void advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
+  bool advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
                const Push& push) const;
+  OwnedField operate(const Approach& approach, const OwnedField& d) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
-                    const TimeStep& step, double* scale) const;
+                    const TimeStep& step, double* scale,
+                    const std::vector<std::size_t>* elements = nullptr) const;
+  void find_tools();
   OwnedField external(const TimeStep& step) const;
   OwnedField apply_operator(const OwnedField& d, const std::vector<Mat3>& R,
                             double inverse_h) const;
@@ -193,6 +211,9 @@ class Tissue
   std::vector<Mat3> R_;            ///< rotations of the present linearisation
   OwnedField weight_;              ///< ρ g V/4 per node [N]
   std::vector<OwnedField> traction_;
+  /// Dofs that a prescribed displacement holds: owned dof and which condition.
+  std::vector<std::pair<Eigen::Index, std::size_t>> tool_dofs_;
+  std::vector<std::size_t> tool_elements_;  ///< that touch them
   /// One per distinct h for linear tissue. Else one, filled again when h or any rotation changes.
   std::vector<Operator> operators_;
   Operator* current_ = nullptr;

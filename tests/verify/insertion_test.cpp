@@ -359,7 +359,7 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   const tissue::TissueState rest = body.tissue.at_rest();
   const auto motion = body.tissue.free_motion(rest, rest.u, now);
   const auto linear = needle.linearise(needle.initial(), needle.initial(), now);
-  const solve::Probes probes{set.probed_nodes(), {}};
+  const solve::Probes probes = set.probes();
   solve::ComplianceReport report;
   const core::MatX C = body.tissue.compliance().block(probes, report);
   const law::Problem problem =

@@ -1,0 +1,196 @@
+#include "cavity/cavities.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace trocar::cavity {
+
+double PressureCurve::at(double t) const
+{
+  const double wave = mean + amplitude * std::sin(2.0 * std::numbers::pi * t / period);
+  return curve ? wave * core::interpolate(*curve, 1, t) : wave;
+}
+
+Cavities::Cavities(const mesh::Mesh& mesh, const fem::Space& space, Settings settings,
+                   core::Ledger& ledger)
+    : space_(&space), ledger_(&ledger), settings_(std::move(settings))
+{
+  std::vector<int> owner(mesh.x.size(), -1);
+  for (const CavitySettings& one : settings_.cavities) {
+    const int i = size();
+    const Wall& wall = walls_.emplace_back(mesh, one.surface, one.caps);
+    for (int node : wall.nodes()) {
+      int& mine = owner[index(node)];
+      if (mine >= 0)
+        throw core::option_error("option -cavities: '" + settings_.cavities[index(mine)].name +
+                                 "' and '" + one.name + "' share a wall: one law for each");
+      mine = i;
+    }
+    g0_.push_back(law::volume_gradient(wall.surface(), wall.undeformed()));
+    ++ledger_->surface_passes;
+    auto probe = std::make_shared<solve::WideProbe>();
+    if (one.model == Model::linear) *probe = {i, wall.to_nodes(g0_.back() / wall.area(), space)};
+    undeformed_probe_.push_back(std::move(probe));
+  }
+}
+
+bool Cavities::any(Model model) const
+{
+  return std::any_of(settings_.cavities.begin(), settings_.cavities.end(),
+                     [&](const CavitySettings& one) { return one.model == model; });
+}
+
+State Cavities::start() const
+{
+  State state;
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    CavityState cavity;
+    cavity.amount = one.volume > 0.0 ? one.volume : walls_[index(i)].volume();
+    if (one.volume_curve) cavity.amount *= core::interpolate(*one.volume_curve, 1, 0.0);
+    cavity.given =
+        one.fluid.kind == law::FluidLaw::Kind::pressure || one.initial_pressure.has_value();
+    state.cavity.push_back(cavity);
+  }
+  state.edge.resize(settings_.edges.size());
+  return state;
+}
+
+State Cavities::advance(const State& old, double t_old, double t, const std::vector<Tip>& tips,
+                        const OwnedField& u) const
+{
+  State next = old;
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    if (!one.volume_curve) continue;
+    const double whole = one.volume > 0.0 ? one.volume : walls_[index(i)].volume();
+    next.cavity[index(i)].amount += whole * (core::interpolate(*one.volume_curve, 1, t) -
+                                             core::interpolate(*one.volume_curve, 1, t_old));
+  }
+  for (std::size_t e = 0; e < settings_.edges.size(); ++e) {
+    const EdgeSettings& edge = settings_.edges[e];
+    if (edge.needle < 0) continue;
+    const Tip& tip = tips[index(edge.needle)];
+    EdgeState& state = next.edge[e];
+    state.needle_in = state.needle_in && tip.arc >= state.wall_arc;
+    if (tip.in_tissue || state.needle_in) continue;
+    for (int i : {edge.from, edge.to}) {
+      if (i < 0) continue;
+      const Wall& wall = walls_[index(i)];
+      const VecX x = wall.undeformed() + wall.at_vertices(u, *space_);
+      ++ledger_->surface_passes;
+      if (!wall.holds(tip.position - wall.reference(), x)) continue;
+      state.pierced = state.needle_in = true;
+      state.wall_arc = tip.wall_arc;
+      state.channel = tip.channel;
+    }
+  }
+  return next;
+}
+
+Shape Cavities::shape(const OwnedField& u) const
+{
+  Shape shape;
+  for (const Wall& wall : walls_) shape.push_back(wall.undeformed() + wall.at_vertices(u, *space_));
+  ++ledger_->surface_passes;
+  return shape;
+}
+
+VecX Cavities::volumes(const Shape& shape) const
+{
+  VecX volumes(size());
+  for (int i = 0; i < size(); ++i)
+    volumes[i] = law::volume(walls_[index(i)].surface(), shape[index(i)]);
+  return volumes;
+}
+
+VecX Cavities::pressures(const State& state) const
+{
+  VecX p(size());
+  for (int i = 0; i < size(); ++i) p[i] = state.cavity[index(i)].pressure;
+  return p;
+}
+
+double Cavities::given_pressure(int i, const TimeStep& now) const
+{
+  const CavitySettings& one = settings_.cavities[index(i)];
+  if (one.fluid.kind != law::FluidLaw::Kind::pressure) return now.load * *one.initial_pressure;
+  return now.load * one.pressure.at(now.t);
+}
+
+/// Volume gradient of the wall as its pressure sees it.
+VecX Cavities::gradient(int i, const Shape& shape) const
+{
+  if (settings_.cavities[index(i)].model != Model::follower) return g0_[index(i)];
+  return law::volume_gradient(walls_[index(i)].surface(), shape[index(i)]);
+}
+
+fem::Load Cavities::load(const State& state, const Shape& shape, const TimeStep& now) const
+{
+  fem::Load load;
+  std::vector<double> p(walls_.size(), 0.0);
+  bool follows = false;
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    const Wall& wall = walls_[index(i)];
+    const bool given = state.cavity[index(i)].given;
+    const bool follower = one.model == Model::follower;
+    p[index(i)] = given ? given_pressure(i, now) : state.cavity[index(i)].pressure;
+    VecX f = VecX::Zero(wall.undeformed().size());
+    if (given) f += p[index(i)] * gradient(i, shape);
+    if (!one.weight.isZero(0.0))
+      f += now.load * law::moment_gradient(wall.surface(),
+                                           follower ? shape[index(i)] : wall.undeformed(),
+                                           one.weight);
+    follows = follows || (follower && (p[index(i)] != 0.0 || !one.weight.isZero(0.0)));
+    if (f.isZero(0.0)) continue;
+    if (load.force.value.size() == 0) load.force = space_->zero();
+    load.force.value += wall.to_nodes(f, *space_).value;
+  }
+  if (!follows) return load;
+  load.stiffness = [this, shape, p, share = now.load](const OwnedField& d) {
+    OwnedField f = space_->zero();
+    for (int i = 0; i < size(); ++i) {
+      const CavitySettings& one = settings_.cavities[index(i)];
+      if (one.model != Model::follower) continue;
+      const Wall& wall = walls_[index(i)];
+      const VecX& x = shape[index(i)];
+      const VecX d_wall = wall.at_vertices(d, *space_);
+      VecX change = p[index(i)] * law::volume_hessian_times(wall.surface(), x, d_wall);
+      if (!one.weight.isZero(0.0))
+        change += share * law::moment_hessian_times(wall.surface(), x, one.weight, d_wall);
+      f.value += wall.to_nodes(change, *space_).value;
+    }
+    ++ledger_->surface_passes;
+    return f;
+  };
+  return load;
+}
+
+OwnedField Cavities::forces(const State& state, const Shape& shape, const TimeStep& now) const
+{
+  OwnedField f = space_->zero();
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    const Wall& wall = walls_[index(i)];
+    VecX mine = state.cavity[index(i)].pressure * gradient(i, shape);
+    if (!one.weight.isZero(0.0))
+      mine += now.load * law::moment_gradient(
+                             wall.surface(),
+                             one.model == Model::follower ? shape[index(i)] : wall.undeformed(),
+                             one.weight);
+    f.value += wall.to_nodes(mine, *space_).value;
+  }
+  return f;
+}
+
+void Cavities::hold_volume(int cavity, double volume, State& state)
+{
+  settings_.cavities[index(cavity)].fluid.kind = law::FluidLaw::Kind::constant_volume;
+  CavityState& mine = state.cavity[index(cavity)];
+  mine.given = false;
+  mine.amount = volume;
+}
+
+}  // namespace trocar::cavity

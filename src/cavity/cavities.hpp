@@ -1,0 +1,173 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cavity/settings.hpp"
+#include "cavity/wall.hpp"
+#include "constraint/set.hpp"
+#include "core/ledger.hpp"
+#include "core/time_step.hpp"
+#include "fem/load.hpp"
+
+namespace trocar::cavity {
+
+using core::MatX;
+using core::TimeStep;
+
+/// State of one cavity. A value, equal on every rank.
+struct CavityState
+{
+  double pressure = 0.0;        ///< at the reference point of its wall [Pa]
+  double amount = 0.0;          ///< V_f: volume of the fluid at its reference pressure [m³]
+  double start_pressure = 0.0;  ///< [Pa]
+  double reference = 0.0;       ///< pressure at which the fluid takes its amount [Pa]
+  bool given = false;           ///< the pressure is given: always, or only at the start
+};
+
+struct EdgeState
+{
+  bool pierced = false;    ///< a needle came through
+  bool needle_in = false;  ///< and is still there
+  double wall_arc = 0.0;   ///< where its path left the tissue [m]
+  double channel = 0.0;    ///< tissue that it went through [m]
+  double flow = 0.0;       ///< [m³/s]
+  double moved = 0.0;      ///< since the start [m³]
+};
+
+struct State
+{
+  std::vector<CavityState> cavity;
+  std::vector<EdgeState> edge;
+};
+
+/// Where a needle's tip is.
+struct Tip
+{
+  Vec3 position = Vec3::Zero();  ///< [m]
+  bool in_tissue = true;
+  double arc = 0.0;       ///< of the tip along its path [m]
+  double wall_arc = 0.0;  ///< where the path last left the tissue [m]
+  double channel = 0.0;   ///< length of the path in tissue up to there [m]
+};
+
+/// Volume and compliance of the fluids at given pressures, the network over a step included.
+struct Fluid
+{
+  VecX volume;      ///< V_law(p) (cavities) [m³]
+  MatX compliance;  ///< D = -∂V_law/∂p, symmetric positive semidefinite [m³/Pa]
+};
+
+/// Coordinates of all walls' vertices, each from its reference point [m].
+using Shape = std::vector<VecX>;
+
+/// Rows of cavities in a set: row `first + k` is that of cavity `cavity[k]`.
+struct CavityRows
+{
+  int first = 0;
+  std::vector<int> cavity;
+  VecX held;      ///< volume at zero increments, by row [m³]
+  VecX pressure;  ///< at which the fluids were linearised, by cavity [Pa]
+  Fluid fluid;    ///< there
+  State state;    ///< that the fluids were linearised for
+  TimeStep now;
+};
+
+/// Pressures of frozen cavities, or why there are none.
+struct NextPressures
+{
+  VecX p;  ///< [Pa]
+  std::optional<std::string> trouble{};
+};
+
+/// What one cavity did in a step.
+struct CavityReport
+{
+  double pressure = 0.0, volume = 0.0;  ///< [Pa], [m³] of the deformed wall
+  double error = 0.0;                   ///< |V - V_law| / V_0, of the deformed wall
+  int iterations = 0;                   ///< linearisations or pressure updates
+  bool alarm = false;
+};
+
+/// The fluid-filled cavities of a scene and the network between them. A row of the constraint
+/// system has the multiplier p·area [N] and the gap (V - V_law)/area [m]. Collective where it
+/// meets fields; all answers but fields are equal on every rank.
+class Cavities
+{
+ public:
+  /// Borrows mesh, space and ledger. Throws Failure (64, 65) as `Wall` does, and for two cavities
+  /// on one wall.
+  Cavities(const mesh::Mesh& mesh, const fem::Space& space, Settings settings,
+           core::Ledger& ledger);
+
+  int size() const { return static_cast<int>(walls_.size()); }
+  const Settings& settings() const { return settings_; }
+  const Wall& wall(int i) const { return walls_[index(i)]; }
+  bool any(Model model) const;
+  bool follows() const { return any(Model::follower); }  ///< steps are iterated
+
+  State start() const;
+  /// Events and amounts of a step, decided before the solve: what the tips have opened, what is
+  /// injected by curves. `u`: displacement at the start of the step. Collective.
+  State advance(const State& old, double t_old, double t, const std::vector<Tip>& tips,
+                const OwnedField& u) const;
+
+  Shape shape(const OwnedField& u) const;    ///< collective: one pass over the walls' nodes
+  VecX volumes(const Shape& shape) const;    ///< [m³]
+  VecX pressures(const State& state) const;  ///< [Pa]
+  /// Forces of given pressures and of the fluids' weight; those of rows are not in it. Collective.
+  fem::Load load(const State& state, const Shape& shape, const TimeStep& now) const;
+  /// All forces of pressures and weight where the walls are now [N]. Not collective.
+  OwnedField forces(const State& state, const Shape& shape, const TimeStep& now) const;
+  Fluid fluid(const State& state, const VecX& p, const TimeStep& now) const;
+
+  /// Rows of linear and follower cavities at the iterate u. Collective.
+  CavityRows add_rows(const State& state, const Shape& shape, const OwnedField& u,
+                      const TimeStep& now, constraint::Set& set);
+  /// Linearises the fluids anew where the multipliers have led; false when they were right.
+  bool refresh(const VecX& lambda, CavityRows& rows, constraint::Set& set) const;
+  /// Pressures from multipliers, and given ones of this time.
+  void take(const CavityRows& rows, const VecX& lambda, const TimeStep& now, State& state) const;
+
+  /// True when every exact volume is that of its fluid, to its tolerance.
+  bool closed(const State& state, const Shape& shape, const TimeStep& now) const;
+  /// Ends a step: flows are booked, and what is to be known of it. Collective.
+  std::vector<CavityReport> accept(State& state, const OwnedField& u, const TimeStep& now) const;
+
+  // Cavities of the frozen model: their pressures are found outside the constraint system.
+  std::vector<int> frozen(const State& state) const;
+  OwnedField unit_load(int cavity) const;  ///< g_0 [m²]: force of a unit pressure
+  /// Next pressures of the frozen cavities from where the walls are, and the displacement per unit
+  /// of every frozen pressure (not used by the proportional solver). Collective.
+  NextPressures next_pressures(const State& state, const Shape& shape,
+                               const std::vector<OwnedField>& per_p, const TimeStep& now) const;
+  static void set_pressures(const std::vector<int>& which, const VecX& p, State& state);
+  int most_updates() const;   ///< of pressures in one step
+  bool proportional() const;  ///< the solver of the frozen cavities
+  /// Slope dP/d(V/V_0) of the line through V(p) between 0.7 and 1.3 V_0 [Pa]; `per_p`: displacement
+  /// per unit pressure, everything else at rest. Collective.
+  double line_gain(int cavity, const OwnedField& per_p) const;
+  double gain(int cavity) const { return settings_.cavities[index(cavity)].gain; }
+  void set_gain(int cavity, double gain) { settings_.cavities[index(cavity)].gain = gain; }
+  /// For P-V curves: the cavity holds this volume, whatever its law. Not collective.
+  void hold_volume(int cavity, double volume, State& state);
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  law::Edge edge(int e, const State& state, double t) const;
+  VecX gradient(int i, const Shape& shape) const;
+  double linear_volume(int i, const OwnedField& u) const;
+  void set_gaps(const CavityRows& rows, constraint::Set& set) const;
+  double given_pressure(int i, const TimeStep& now) const;
+
+  const fem::Space* space_;
+  core::Ledger* ledger_;
+  Settings settings_;
+  std::vector<Wall> walls_;
+  std::vector<VecX> g0_;  ///< volume gradient of the undeformed walls, by vertex [m²]
+  std::vector<std::shared_ptr<const solve::WideProbe>> undeformed_probe_;  ///< of linear cavities
+  long long versions_ = 0;  ///< of the probes of follower cavities
+};
+
+}  // namespace trocar::cavity

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "cavity/cavities.hpp"
+
+// Cavities in the constraint system: what their fluids hold, and what a step leaves.
+namespace trocar::cavity {
+
+/// The edge as the network sees it at time t. Gap: a thin annulus between plates, hole: a pipe
+/// (Poiseuille).
+law::Edge Cavities::edge(int e, const State& state, double t) const
+{
+  const EdgeSettings& one = settings_.edges[index(e)];
+  const EdgeState& now = state.edge[index(e)];
+  const double length = one.length > 0.0 ? one.length : now.channel;
+  double resistance = one.resistance;
+  if (one.needle >= 0 && now.needle_in && one.gap > 0.0)
+    resistance = 6.0 * one.viscosity * length /
+                 (std::numbers::pi * one.needle_radius * std::pow(one.gap, 3));
+  if (one.needle >= 0 && !now.needle_in) {
+    resistance = now.pierced ? one.hole_resistance : 0.0;
+    if (now.pierced && one.hole_radius > 0.0)
+      resistance = 8.0 * one.viscosity * length / (std::numbers::pi * std::pow(one.hole_radius, 4));
+  }
+  law::Edge edge{one.from, one.to, resistance > 0.0 ? 1.0 / resistance : 0.0, one.valve, 0.0};
+  if (one.flow != 0.0 && (one.needle < 0 || now.needle_in))
+    edge.flow = one.flow * (one.flow_curve ? core::interpolate(*one.flow_curve, 1, t) : 1.0);
+  return edge;
+}
+
+Fluid Cavities::fluid(const State& state, const VecX& p, const TimeStep& now) const
+{
+  Fluid fluid{VecX::Zero(size()), MatX::Zero(size(), size())};
+  for (int i = 0; i < size(); ++i) {
+    const CavityState& mine = state.cavity[index(i)];
+    const double V0 = walls_[index(i)].volume();
+    const auto answer = settings_.cavities[index(i)].fluid.at(p[i], mine.amount, mine.reference);
+    fluid.volume[i] = V0 + now.load * (answer.volume - V0);
+    fluid.compliance(i, i) = now.load * answer.compliance;
+  }
+  if (settings_.edges.empty() || !(now.t > 0.0)) return fluid;  // the start takes no time
+  std::vector<law::Edge> edges;
+  for (int e = 0; e < static_cast<int>(settings_.edges.size()); ++e)
+    edges.push_back(edge(e, state, now.t));
+  const law::Flows flows = law::network_flows(edges, p);
+  fluid.volume += now.h * flows.inflow;
+  fluid.compliance += now.h * flows.conductance;
+  return fluid;
+}
+
+/// V_0 + g_0·u [m³].
+double Cavities::linear_volume(int i, const OwnedField& u) const
+{
+  const Wall& wall = walls_[index(i)];
+  return wall.volume() + wall.area() * space_->dot(undeformed_probe_[index(i)]->vector, u);
+}
+
+CavityRows Cavities::add_rows(const State& state, const Shape& shape, const OwnedField& u,
+                              const TimeStep& now, constraint::Set& set)
+{
+  CavityRows rows;
+  rows.first = set.size();
+  int point = set.empty() ? 0 : set.rows().back().point + 1;
+  std::vector<double> held;
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    if (one.model == Model::frozen || state.cavity[index(i)].given) continue;
+    const Wall& wall = walls_[index(i)];
+    std::shared_ptr<const solve::WideProbe> probe = undeformed_probe_[index(i)];
+    if (one.model == Model::follower)
+      probe = std::make_shared<solve::WideProbe>(solve::WideProbe{
+          i, wall.to_nodes(gradient(i, shape) / wall.area(), *space_), ++versions_});
+    held.push_back(one.model == Model::follower ? law::volume(wall.surface(), shape[index(i)])
+                                                : linear_volume(i, u));
+    constraint::Row row;
+    row.wide = set.add_wide(std::move(probe));
+    row.start = state.cavity[index(i)].pressure * wall.area();
+    row.point = point++;
+    set.add(row);
+    rows.cavity.push_back(i);
+  }
+  rows.held = Eigen::Map<VecX>(held.data(), static_cast<Eigen::Index>(held.size()));
+  rows.pressure = pressures(state);
+  rows.fluid = fluid(state, rows.pressure, now);
+  rows.state = state;
+  rows.now = now;
+  set_gaps(rows, set);
+  return rows;
+}
+
+/// δ = (V - V_law(p))/area, linear in the pressures about those of the rows.
+void Cavities::set_gaps(const CavityRows& rows, constraint::Set& set) const
+{
+  set.couplings().clear();
+  const auto count = static_cast<int>(rows.cavity.size());
+  for (int k = 0; k < count; ++k) {
+    const int i = rows.cavity[index(k)];
+    double gap = rows.held[k] - rows.fluid.volume[i];
+    for (int l = 0; l < count; ++l) {
+      const int j = rows.cavity[index(l)];
+      gap -= rows.fluid.compliance(i, j) * rows.pressure[j];
+      if (l <= k && rows.fluid.compliance(i, j) != 0.0)
+        set.couplings().push_back(
+            {rows.first + k, rows.first + l,
+             rows.fluid.compliance(i, j) / walls_[index(i)].area() / walls_[index(j)].area()});
+    }
+    set.set_gap(rows.first + k, gap / walls_[index(i)].area());
+  }
+}
+
+bool Cavities::refresh(const VecX& lambda, CavityRows& rows, constraint::Set& set) const
+{
+  VecX p = rows.pressure;
+  for (std::size_t k = 0; k < rows.cavity.size(); ++k) {
+    const int i = rows.cavity[k];
+    p[i] = lambda[rows.first + static_cast<Eigen::Index>(k)] / walls_[index(i)].area();
+  }
+  const Fluid there = fluid(rows.state, p, rows.now);
+  const VecX expected = rows.fluid.volume - rows.fluid.compliance * (p - rows.pressure);
+  bool right = true;
+  for (int i : rows.cavity)
+    right = right && std::abs(there.volume[i] - expected[i]) <= 1e-13 * walls_[index(i)].volume();
+  if (right) return false;
+  rows.pressure = p;
+  rows.fluid = there;
+  set_gaps(rows, set);
+  return true;
+}
+
+void Cavities::take(const CavityRows& rows, const VecX& lambda, const TimeStep& now,
+                    State& state) const
+{
+  for (int i = 0; i < size(); ++i)
+    if (state.cavity[index(i)].given) state.cavity[index(i)].pressure = given_pressure(i, now);
+  for (std::size_t k = 0; k < rows.cavity.size(); ++k) {
+    const int i = rows.cavity[k];
+    state.cavity[index(i)].pressure =
+        lambda[rows.first + static_cast<Eigen::Index>(k)] / walls_[index(i)].area();
+  }
+}
+
+bool Cavities::closed(const State& state, const Shape& shape, const TimeStep& now) const
+{
+  const VecX V = volumes(shape);
+  const Fluid fluids = fluid(state, pressures(state), now);
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    if (one.model == Model::linear || state.cavity[index(i)].given) continue;
+    const double V0 = walls_[index(i)].volume();
+    if (!(std::abs(V[i] - fluids.volume[i]) <= one.tolerance * V0)) return false;
+  }
+  return true;
+}
+
+std::vector<CavityReport> Cavities::accept(State& state, const OwnedField& u,
+                                           const TimeStep& now) const
+{
+  const VecX V = volumes(shape(u));
+  const VecX p = pressures(state);
+  const Fluid fluids = fluid(state, p, now);
+  std::vector<CavityReport> reports;
+  const bool starts = !(now.t > 0.0) && now.load >= 1.0;
+  for (int i = 0; i < size(); ++i) {
+    const CavitySettings& one = settings_.cavities[index(i)];
+    CavityState& mine = state.cavity[index(i)];
+    CavityReport report{p[i], V[i], 0.0, 0, false};
+    if (!mine.given) report.error = std::abs(V[i] - fluids.volume[i]) / walls_[index(i)].volume();
+    if (starts) {
+      mine.start_pressure = p[i];
+      if (mine.given && one.fluid.kind != law::FluidLaw::Kind::pressure) {
+        mine.given = false;
+        mine.amount = one.model == Model::linear ? linear_volume(i, u) : V[i];
+        mine.reference = p[i];
+      }
+    }
+    report.alarm = one.alarm > 0.0 && std::abs(p[i] - mine.start_pressure) >= one.alarm;
+    reports.push_back(report);
+  }
+  if (settings_.edges.empty() || !(now.t > 0.0)) return reports;
+  std::vector<law::Edge> edges;
+  for (int e = 0; e < static_cast<int>(settings_.edges.size()); ++e)
+    edges.push_back(edge(e, state, now.t));
+  const law::Flows flows = law::network_flows(edges, p);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    state.edge[e].flow = flows.edge[static_cast<Eigen::Index>(e)];
+    state.edge[e].moved += now.h * state.edge[e].flow;
+  }
+  for (int i = 0; i < size(); ++i) {
+    CavityState& mine = state.cavity[index(i)];
+    const auto answer = settings_.cavities[index(i)].fluid.at(p[i], mine.amount, mine.reference);
+    mine.amount += now.h * flows.inflow[i] / answer.per_amount;
+  }
+  return reports;
+}
+
+}  // namespace trocar::cavity

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fem/space.hpp"
+#include "law/volume.hpp"
+
+namespace trocar::cavity {
+
+using core::Vec3;
+using core::VecX;
+using fem::OwnedField;
+
+/// The wall between a cavity's fluid and the tissue: a physical surface of the mesh, closed,
+/// oriented out of the fluid, its holes closed by caps. A cap is a fan of flat triangles around the
+/// mean of its rim: no new dofs, and the pressure on it is carried by the rim.
+class Wall
+{
+ public:
+  /// Checks and orients the surface. Throws Failure (65) naming the surface when it is empty, has a
+  /// face twice, is not the boundary of the tissue, touches itself, lies round the tissue instead
+  /// of a void, encloses nothing, or has a hole and `caps` is false. Not collective.
+  Wall(const mesh::Mesh& mesh, const std::string& surface, bool caps);
+
+  const std::string& name() const { return name_; }
+  double volume() const { return volume_; }                 ///< V_0, undeformed [m³]
+  double area() const { return area_; }                     ///< undeformed, caps included [m²]
+  const Vec3& reference() const { return reference_; }      ///< coordinates count from there [m]
+  const std::vector<int>& nodes() const { return nodes_; }  ///< file nodes, ascending
+  /// File nodes around every hole that was capped.
+  const std::vector<std::vector<int>>& rims() const { return rims_; }
+  const law::ClosedSurface& surface() const { return surface_; }
+
+  /// Undeformed coordinates of the vertices (nodes, then caps) less the reference point [m].
+  const VecX& undeformed() const { return undeformed_; }
+  /// Values of a field at the vertices (3 · vertices), equal on every rank. Collective.
+  VecX at_vertices(const OwnedField& field, const fem::Space& space) const;
+  /// The adjoint: nodal values of what stands at the vertices. Not collective.
+  OwnedField to_nodes(const VecX& vertices, const fem::Space& space) const;
+
+  /// True when the point lies inside the wall at these vertex coordinates (counted, like them, from
+  /// the reference point): its solid angle is 4π.
+  bool holds(const Vec3& point, const VecX& x) const;
+
+ private:
+  void orient(const mesh::Mesh& mesh, const mesh::SurfaceGroup& group);
+  void check_edges(const mesh::Mesh& mesh, bool caps);
+  void check_fans(const mesh::Mesh& mesh) const;
+  void cap(const std::vector<int>& rim);
+  void measure(const mesh::Mesh& mesh);
+
+  std::string name_;
+  law::ClosedSurface surface_;          ///< by vertex
+  std::vector<int> nodes_;              ///< file node of the first vertices
+  std::vector<std::vector<int>> rims_;  ///< in file nodes
+  std::vector<std::vector<int>> rim_vertices_;
+  Vec3 reference_ = Vec3::Zero();
+  VecX undeformed_;
+  double volume_ = 0.0, area_ = 0.0;
+};
+
+}  // namespace trocar::cavity

@@ -1,0 +1,102 @@
+#include "driver/boundary_options.hpp"
+
+#include "core/csv.hpp"
+#include "driver/option_source.hpp"
+
+namespace trocar::driver {
+namespace {
+
+using core::Options;
+using core::Vec3;
+
+std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
+{
+  std::vector<tissue::BoundaryConditions::Fixed> fixed;
+  for (const std::string& entry : options.names("fix")) {
+    const auto colon = entry.find(':');
+    tissue::BoundaryConditions::Fixed one{entry.substr(0, colon), 7};
+    if (colon != std::string::npos) {
+      one.axes = 0;
+      for (char axis : entry.substr(colon + 1)) {
+        if (axis < 'x' || axis > 'z')
+          throw core::option_error("option -fix: '" + entry + "': axes are letters of xyz");
+        one.axes |= 1U << (axis - 'x');
+      }
+    }
+    fixed.push_back(one);
+  }
+  return fixed;
+}
+
+/// Displacement of every node of a group, by file node.
+std::map<int, Vec3> read_field(const std::string& file, const std::string& group,
+                               const mesh::Mesh& mesh, const base::Comm& comm)
+{
+  const core::Csv table = read_csv(file, comm);
+  if (table.columns != std::vector<std::string>{"node", "x", "y", "z"})
+    throw core::data_error(file + ": columns must be node,x,y,z");
+  std::map<long long, Vec3> by_tag;
+  for (const auto& row : table.rows)
+    by_tag[static_cast<long long>(row[0])] = Vec3(row[1], row[2], row[3]);
+  std::map<int, Vec3> field;
+  for (int node : mesh::group_nodes(mesh, group)) {
+    const long long tag = mesh.node_tag[static_cast<std::size_t>(node)];
+    const auto at = by_tag.find(tag);
+    if (at == by_tag.end())
+      throw core::data_error(file + ": node " + std::to_string(tag) + " of group '" + group +
+                             "' is missing");
+    field.emplace(node, at->second);
+  }
+  return field;
+}
+
+}  // namespace
+
+tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mesh,
+                                         const base::Comm& comm)
+{
+  tissue::BoundaryConditions boundary;
+  boundary.gravity = options.vector("gravity");
+  boundary.fixed = read_fixed(options);
+  std::set<std::string> groups = options.groups_given("boundary_<surf>_displacement");
+  for (const char* pattern :
+       {"boundary_<surf>_traction", "boundary_<surf>_curve", "boundary_<surf>_field"})
+    for (const std::string& group : options.groups_given(pattern)) groups.insert(group);
+  for (const std::string& group : groups) {
+    const std::string field = options.text("boundary_<surf>_field", group);
+    const bool uniform = options.given("boundary_<surf>_displacement", group);
+    if (uniform && !field.empty())
+      throw core::option_error("option -boundary_" + group +
+                               "_field: the group has one displacement for all nodes already");
+    const bool moves = uniform || !field.empty();
+    const bool pulls = options.given("boundary_<surf>_traction", group);
+    const std::string file = options.text("boundary_<surf>_curve", group);
+    std::optional<core::Csv> curve;
+    if (!file.empty()) {
+      if (!moves && !pulls)
+        throw core::option_error("option -boundary_" + group +
+                                 "_curve: the group has neither displacement nor traction");
+      curve = read_csv(file, comm);
+      core::require_time_column(*curve);
+      if (curve->columns.size() != 2)
+        throw core::data_error(file + ": columns must be time,factor");
+    }
+    if (moves) {
+      mesh::group_nodes(mesh, group);
+      boundary.displacements.push_back(
+          {group,
+           uniform ? options.vector_or_free("boundary_<surf>_displacement", group)
+                   : Vec3(Vec3::Zero()),
+           curve, field.empty() ? std::map<int, Vec3>{} : read_field(field, group, mesh, comm)});
+    }
+    if (pulls) {
+      mesh::surface_group(mesh, group);
+      boundary.tractions.push_back(
+          {group, options.vector("boundary_<surf>_traction", group), curve});
+    }
+  }
+  for (const auto& fixed : boundary.fixed) mesh::group_nodes(mesh, fixed.group);
+  return boundary;
+}
+
+}  // namespace trocar::driver

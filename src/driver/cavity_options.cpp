@@ -1,0 +1,255 @@
+#include "driver/cavity_options.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "core/words.hpp"
+#include "driver/option_source.hpp"
+#include "mesh/hollow.hpp"
+
+namespace trocar::driver {
+namespace {
+
+using core::Options;
+
+core::Failure bad(const std::string& option, const std::string& name, const std::string& why)
+{
+  return core::option_error("option -" + option + " of '" + name + "': " + why);
+}
+
+/// A factor over time.
+std::optional<core::Csv> read_curve(const std::string& file, const base::Comm& comm)
+{
+  if (file.empty()) return std::nullopt;
+  core::Csv curve = read_csv(file, comm);
+  core::require_time_column(curve);
+  if (curve.columns.size() != 2) throw core::data_error(file + ": columns must be time,factor");
+  return curve;
+}
+
+law::MonotoneSpline read_table(const std::string& file, const std::string& name,
+                               const base::Comm& comm)
+{
+  if (file.empty()) throw bad("cavity_table", name, "law table needs a CSV file");
+  const core::Csv table = read_csv(file, comm);
+  if (table.columns != std::vector<std::string>{"pressure", "volume"})
+    throw core::data_error(file + ": columns must be pressure,volume");
+  if (table.rows.size() < 2) throw core::data_error(file + ": two rows at least");
+  std::vector<double> p, v;
+  for (const auto& row : table.rows) {
+    if (!p.empty() && row[0] <= p.back())
+      throw core::data_error(file + ": pressures must rise from row to row");
+    if (!v.empty() && row[1] > v.back())
+      throw core::data_error(file + ": a fluid's volume cannot rise with its pressure (at " +
+                             core::shown(row[0]) + " Pa)");
+    p.push_back(row[0]);
+    v.push_back(row[1]);
+  }
+  return {p, v};
+}
+
+void read_law(Options& options, cavity::CavitySettings& one, const base::Comm& comm)
+{
+  using Kind = law::FluidLaw::Kind;
+  const std::string law = options.text("cavity_<cavity>_law", one.name);
+  const std::map<std::string, Kind> kinds{{"constant_volume", Kind::constant_volume},
+                                          {"pressure", Kind::pressure},
+                                          {"pulse", Kind::pressure},
+                                          {"bulk", Kind::bulk},
+                                          {"gas", Kind::gas},
+                                          {"table", Kind::table}};
+  one.fluid.kind = kinds.at(law);
+  // What belongs to another law would be silently without effect.
+  const auto number = [&](const std::string& option, const std::vector<std::string>& laws) {
+    const std::string full = "cavity_<cavity>_" + option;
+    if (options.given_for(full, one.name) && std::find(laws.begin(), laws.end(), law) == laws.end())
+      throw bad("cavity_" + option, one.name, "law " + law + " does not know it");
+    return options.real(full, one.name);
+  };
+  const double pressure = number("pressure", {"pressure"}), mean = number("mean", {"pulse"});
+  one.pressure.mean = law == "pulse" ? mean : pressure;
+  const double amplitude = number("amplitude", {"pulse"});
+  one.pressure.period = number("period", {"pulse"});
+  if (law == "pulse") one.pressure.amplitude = amplitude;
+  one.fluid.bulk_modulus = number("bulk_modulus", {"bulk"});
+  one.fluid.ambient = number("ambient_pressure", {"gas"});
+  one.volume = number("volume", {"constant_volume", "bulk", "gas"});
+  const double initial = number("initial_pressure", {"constant_volume", "bulk", "gas", "table"});
+  if (options.given("cavity_<cavity>_initial_pressure", one.name) &&
+      one.fluid.kind != Kind::pressure)
+    one.initial_pressure = initial;
+  if (one.initial_pressure && one.volume > 0.0)
+    throw bad("cavity_volume", one.name, "the amount follows from the initial pressure already");
+  const std::string table = options.text("cavity_<cavity>_table", one.name);
+  if (law == "table")
+    one.fluid.table = read_table(table, one.name, comm);
+  else if (options.given_for("cavity_<cavity>_table", one.name))
+    throw bad("cavity_table", one.name, "law " + law + " does not know it");
+  const auto curve = read_curve(options.text("cavity_<cavity>_curve", one.name), comm);
+  (one.fluid.kind == Kind::pressure ? one.pressure.curve : one.volume_curve) = curve;
+}
+
+void read_model(Options& options, cavity::CavitySettings& one, tissue::Model tissue)
+{
+  const std::map<std::string, cavity::Model> models{{"linear", cavity::Model::linear},
+                                                    {"frozen", cavity::Model::frozen},
+                                                    {"follower", cavity::Model::follower}};
+  const std::string model = options.text("cavity_<cavity>_model", one.name);
+  const std::string solver = options.text("cavity_<cavity>_solver", one.name);
+  one.model = models.at(model);
+  if (one.model != cavity::Model::follower && tissue != tissue::Model::linear)
+    throw bad("cavity_model", one.name, model + " needs -tissue_model linear");
+  if (one.model != cavity::Model::frozen && solver != "auto" && solver != "newton")
+    throw bad("cavity_solver", one.name, solver + " is for model frozen only, not " + model);
+  if (one.model == cavity::Model::frozen)
+    one.solver = solver == "proportional" ? cavity::Solver::proportional
+                 : solver == "newton"     ? cavity::Solver::newton
+                                          : cavity::Solver::exact;
+  one.gain = options.real("cavity_<cavity>_gain", one.name);
+  one.tolerance = options.real("cavity_<cavity>_tolerance", one.name);
+  one.most_updates = options.integer("cavity_<cavity>_max_updates", one.name);
+}
+
+std::string wall_of(Options& options, const std::string& name)
+{
+  const std::string surface = options.text("cavity_<cavity>_surface", name);
+  const std::string region = options.text("cavity_<cavity>_region", name);
+  if (surface.empty() == region.empty())
+    throw bad("cavity_surface", name,
+              "give either a surface or a volume to be taken out (-cavity_<n>_region)");
+  return surface.empty() ? region : surface;
+}
+
+/// Frozen cavities are solved outside the constraint system, together and by one solver.
+void require_one_way(const std::vector<cavity::CavitySettings>& cavities)
+{
+  const cavity::CavitySettings* frozen = nullptr;
+  for (const auto& one : cavities)
+    if (one.model == cavity::Model::frozen) frozen = &one;
+  if (!frozen) return;
+  for (const auto& one : cavities) {
+    if (one.model != frozen->model)
+      throw bad("cavity_model", one.name,
+                "the cavities of a scene are all frozen or none ('" + frozen->name + "' is)");
+    if (one.solver != frozen->solver)
+      throw bad("cavity_solver", one.name,
+                "frozen cavities share one solver ('" + frozen->name + "' has another)");
+  }
+}
+
+int cavity_index(const std::vector<cavity::CavitySettings>& cavities, const std::string& name,
+                 const std::string& option)
+{
+  if (name == "outside") return -1;
+  std::vector<std::string> names{"outside"};
+  for (std::size_t i = 0; i < cavities.size(); ++i) {
+    if (cavities[i].name == name) return static_cast<int>(i);
+    names.push_back(cavities[i].name);
+  }
+  throw core::option_error("option -" + option + ": no cavity '" + name + "'" +
+                           core::did_you_mean(name, names));
+}
+
+cavity::EdgeSettings read_edge(Options& options, const std::string& entry, const Scenario& scenario,
+                               const base::Comm& comm)
+{
+  const std::vector<std::string> words = core::split(entry, ':');
+  if (words.size() != 3)
+    throw core::option_error("option -edges: '" + entry + "' must be NAME:FROM:TO");
+  const auto& cavities = scenario.cavities.cavities;
+  cavity::EdgeSettings edge;
+  edge.name = words[0];
+  edge.from = cavity_index(cavities, words[1], "edges");
+  edge.to = cavity_index(cavities, words[2], "edges");
+  if (edge.from == edge.to)
+    throw core::option_error("option -edges: '" + entry + "' joins a place with itself");
+  const auto real = [&](const std::string& option) {
+    return options.real("edge_<edge>_" + option, edge.name);
+  };
+  edge.resistance = real("resistance");
+  edge.valve = options.flag("edge_<edge>_valve", edge.name);
+  edge.flow = real("flow");
+  edge.flow_curve = read_curve(options.text("edge_<edge>_curve", edge.name), comm);
+  edge.gap = real("gap");
+  edge.hole_resistance = real("hole_resistance");
+  edge.hole_radius = real("hole_radius");
+  edge.viscosity = real("viscosity");
+  edge.length = real("length");
+  if (edge.flow_curve && edge.flow == 0.0)
+    throw bad("edge_curve", edge.name, "there is no prescribed flow to be scaled");
+  const std::string needle = options.text("edge_<edge>_needle", edge.name);
+  if (needle.empty() && (edge.gap > 0.0 || edge.hole_resistance > 0.0 || edge.hole_radius > 0.0))
+    throw bad("edge_needle", edge.name, "gap and hole are a needle's: name it");
+  if (needle.empty() && edge.resistance == 0.0 && edge.flow == 0.0)
+    throw bad("edge_resistance", edge.name, "without resistance and flow the edge does nothing");
+  if (edge.hole_resistance > 0.0 && edge.hole_radius > 0.0)
+    throw bad("edge_hole_resistance", edge.name, "give a resistance or a radius, not both");
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < scenario.needles.size(); ++n) {
+    names.push_back(scenario.needles[n].name);
+    if (needle != names.back()) continue;
+    edge.needle = static_cast<int>(n);
+    edge.needle_radius = scenario.needles[n].section.outer;
+  }
+  if (!needle.empty() && edge.needle < 0)
+    throw bad("edge_needle", edge.name,
+              "no needle '" + needle + "'" + core::did_you_mean(needle, names));
+  return edge;
+}
+
+void read_pv_curve(Options& options, Scenario& scenario)
+{
+  PvSettings& pv = scenario.pv;
+  const std::string name = options.text("pv_cavity");
+  pv.low = options.real("pv_low");
+  pv.high = options.real("pv_high");
+  pv.points = options.integer("pv_points");
+  pv.pieces = options.integer("pv_pieces");
+  const auto& cavities = scenario.cavities.cavities;
+  if (scenario.time.analysis != Analysis::pv_curve) return;
+  if (cavities.empty())
+    throw core::option_error("option -analysis pv_curve: the scene has no cavity (-cavities)");
+  if (!name.empty()) pv.cavity = cavity_index(cavities, name, "pv_cavity");
+  if (pv.cavity < 0) throw core::option_error("option -pv_cavity: outside has no volume");
+  if (!(pv.low < 1.0) || !(pv.high > 1.0))
+    throw core::option_error("option -pv_low, -pv_high: the curve goes from below 1 to above it");
+}
+
+}  // namespace
+
+mesh::Mesh with_cavities_hollow(Options& options, mesh::Mesh mesh)
+{
+  for (const std::string& name : options.names("cavities")) {
+    wall_of(options, name);
+    const std::string region = options.text("cavity_<cavity>_region", name);
+    if (!region.empty()) mesh = mesh::hollow(mesh, region);
+  }
+  return mesh;
+}
+
+void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
+{
+  std::vector<cavity::CavitySettings>& cavities = scenario.cavities.cavities;
+  for (const std::string& name : options.names("cavities")) {
+    if (name == "outside")
+      throw core::option_error("option -cavities: 'outside' is the world's name");
+    cavity::CavitySettings one;
+    one.name = name;
+    one.surface = wall_of(options, name);
+    mesh::surface_group(scenario.mesh, one.surface);
+    one.caps = options.flag("cavity_<cavity>_cap", name);
+    read_law(options, one, comm);
+    read_model(options, one, scenario.tissue.model);
+    one.weight = options.real("cavity_<cavity>_density", name) * scenario.tissue.boundary.gravity;
+    one.alarm = options.real("cavity_<cavity>_alarm", name);
+    cavities.push_back(std::move(one));
+  }
+  require_one_way(cavities);
+  for (const std::string& entry : options.names("edges"))
+    scenario.cavities.edges.push_back(read_edge(options, entry, scenario, comm));
+  read_pv_curve(options, scenario);
+  for (const auto& one : cavities)
+    if (one.initial_pressure || one.volume > 0.0) scenario.time.start_in_equilibrium = true;
+}
+
+}  // namespace trocar::driver

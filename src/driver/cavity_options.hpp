@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/options.hpp"
+#include "driver/scenario.hpp"
+
+namespace trocar::driver {
+
+/// The mesh without the volumes that cavities take out of it. Throws Failure (64, 65). Not
+/// collective.
+mesh::Mesh with_cavities_hollow(core::Options& options, mesh::Mesh mesh);
+
+/// Cavities, edges and the P-V curve, checked against mesh, tissue and needles of the scenario.
+/// Throws Failure (64, 65). Collective.
+void read_cavities(core::Options& options, Scenario& scenario, const base::Comm& comm);
+
+}  // namespace trocar::driver

@@ -1,0 +1,103 @@
+#include "driver/simulation.hpp"
+#include "law/solve.hpp"
+
+// What cavities do in a step beside their rows: forces, and the frozen model's search for pressures
+// around the laws of all other rows.
+namespace trocar::driver {
+
+/// Walls where the state has them; nothing looks at them when no pressure follows.
+cavity::Shape Simulation::walls(const State& state) const
+{
+  return cavities_->follows() ? cavities_->shape(state.tissue.u) : cavity::Shape{};
+}
+
+/// Hᵀλ of the rows that are not cavities [N].
+fem::OwnedField Simulation::needle_forces(const Pass& pass) const
+{
+  if (pass.lambda.lambda.size() == 0) return space_.zero();
+  core::VecX forces = pass.forces;
+  forces.tail(static_cast<Eigen::Index>(pass.probes.wide.size())).setZero();
+  return solve::spread(pass.probes, forces, space_);
+}
+
+/// Forces of needles and cavities on the tissue where it is now [N].
+fem::OwnedField Simulation::all_forces(const Pass& pass, const State& next,
+                                       const core::TimeStep& now) const
+{
+  fem::OwnedField forces = needle_forces(pass);
+  if (cavities_) forces.value += cavities_->forces(next.cavities, walls(next), now).value;
+  return forces;
+}
+
+/// Displacement per unit pressure of every frozen cavity [m/Pa], once for each operator.
+const std::vector<fem::OwnedField>& Simulation::unit_answers(const cavity::State& state,
+                                                             const core::TimeStep& now)
+{
+  constexpr std::size_t most_kept = 2;
+  const auto known = unit_answers_.find(now.inverse());
+  if (known != unit_answers_.end()) return known->second;
+  if (unit_answers_.size() == most_kept) unit_answers_.clear();
+  std::vector<fem::OwnedField>& answers = unit_answers_[now.inverse()];
+  for (int cavity : cavities_->frozen(state))
+    answers.push_back(tissue_.answer(cavities_->unit_load(cavity)));
+  return answers;
+}
+
+/// u = u_free + A⁻¹Hᵀλ + Σ p A⁻¹g_0, λ in the laws for these p, p such that the volumes are those
+/// of the fluids: pressures are updated until they are.
+void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
+                                  const core::VecX& last, Pass& pass, State& next,
+                                  StepReport& report)
+{
+  const fem::OwnedField start = next.tissue.u;
+  const fem::OwnedField free = tissue_.finish(tissue, {}, {});
+  const std::vector<fem::OwnedField>& per_p = unit_answers(next.cavities, now);
+  const std::vector<int> which = cavities_->frozen(next.cavities);
+  const bool rows = !pass.rows.set.empty();
+  if (rows) get_compliance(pass, report);
+  for (std::size_t k = 0; cavities_->proportional() && k < which.size(); ++k)
+    if (cavities_->gain(which[k]) == 0.0)
+      cavities_->set_gain(which[k], cavities_->line_gain(which[k], per_p[k]));
+  cavities_->take({}, {}, now, next.cavities);
+  for (int updates = 0;; ++updates) {
+    fem::OwnedField u = free;
+    for (std::size_t k = 0; k < which.size(); ++k)
+      u.value += cavities_->pressures(next.cavities)[which[k]] * per_p[k].value;
+    if (rows) {
+      pass.trouble = solve_constraints(solve::read(pass.probes, {u.value - start.value}, space_),
+                                       last, pass, report);
+      if (pass.trouble) return;
+      u.value += tissue_.answer(solve::spread(pass.probes, pass.forces, space_)).value;
+    }
+    next.tissue.u = std::move(u);
+    ++report.passes;
+    report.pressure_updates = updates;
+    const cavity::Shape shape = cavities_->shape(next.tissue.u);
+    if (cavities_->closed(next.cavities, shape, now)) return;
+    if (updates == cavities_->most_updates()) {
+      pass.trouble = "the volumes of the cavities are not reached in " + std::to_string(updates) +
+                     " updates of the pressure";
+      return;
+    }
+    std::vector<fem::OwnedField> all_in_all;  // per unit pressure, with what the rows answer
+    if (!cavities_->proportional()) all_in_all = per_p;
+    for (std::size_t k = 0; rows && k < all_in_all.size(); ++k) {
+      const core::VecX moved =
+          constraint::row_displacements(pass.rows.set, solve::read(pass.probes, per_p[k], space_));
+      const core::VecX answer = law::response(pass.problem, pass.lambda.lambda, moved);
+      all_in_all[k].value +=
+          tissue_
+              .answer(solve::spread(pass.probes, constraint::probe_forces(pass.rows.set, answer),
+                                    space_))
+              .value;
+    }
+    const cavity::NextPressures pressures =
+        cavities_->next_pressures(next.cavities, shape, all_in_all, now);
+    pass.trouble = pressures.trouble;
+    if (pass.trouble) return;
+    cavities_->set_pressures(which, pressures.p, next.cavities);
+    ++ledger_.pressure_updates;
+  }
+}
+
+}  // namespace trocar::driver
