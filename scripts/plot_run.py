@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Plots a result folder: force against depth, and the needle in a cut through the tissue.
 
-usage: plot_run.py FOLDER     writes FOLDER/force.png and FOLDER/cut.png
+usage: plot_run.py FOLDER     writes FOLDER/force.png, FOLDER/cut.png, FOLDER/cavities.png and
+                              FOLDER/pv_curve.png, as far as the run has them
 """
 import sys
 from pathlib import Path
@@ -52,6 +53,63 @@ def plot_force(run, folder):
         ax.grid(alpha=0.3)
         ax.legend(frameon=False, fontsize=8)
     figure.savefig(folder / "force.png", dpi=130)
+    plt.close(figure)
+
+
+def plot_cavities(run, folder):
+    """Pressures, volumes, flows and tool forces against time."""
+    history = run["history"]
+    cavities = run["history/cavity"] if "cavity" in history else {}
+    edges = run["history/edge"] if "edge" in history else {}
+    tools = run["history/boundary"] if "boundary" in history else {}
+    time = run["history/time"][:]
+    panels = [bool(len(cavities)), bool(len(cavities)), bool(len(edges)), bool(len(tools))]
+    figure, axes = plt.subplots(1, sum(panels), figsize=(4.2 * sum(panels), 3.8), constrained_layout=True, squeeze=False)
+    ax = iter(axes[0])
+    marker = "." if len(time) < 30 else None
+    if len(cavities):
+        pressure, volume = next(ax), next(ax)
+        for name, one in cavities.items():
+            pressure.plot(time, one["pressure"][:], marker=marker, label=name)
+            volume.plot(time, 1e6 * one["volume"][:], marker=marker, label=name)
+            alarm = np.flatnonzero(one["alarm"][:])
+            if len(alarm):
+                pressure.axvline(time[alarm[0]], color=ORANGE, lw=1, ls="--", label=f"alarm of {name}")
+        pressure.set(ylabel="pressure [Pa]", title="Pressure")
+        volume.set(ylabel="volume [ml]", title="Volume")
+        volume.ticklabel_format(useOffset=False)
+    if len(edges):
+        flow = next(ax)
+        for name, one in edges.items():
+            flow.plot(time, 1e6 * one["flow"][:], label=f"{name}: flow [ml/s]")
+            flow.plot(time, 1e6 * one["moved"][:], ls="--", label=f"{name}: moved [ml]")
+        flow.set(title="Network")
+    if len(tools):
+        force = next(ax)
+        for name, one in tools.items():
+            for k, axis in enumerate("xyz"):
+                force.plot(time, one["force"][:, k], marker=marker, label=f"{name} {axis}")
+        force.set(ylabel="force on the tissue [N]", title="Tools")
+    for one in axes[0]:
+        one.set_xlabel("time [s]")
+        one.grid(alpha=0.3)
+        one.legend(frameon=False, fontsize=8)
+    figure.savefig(folder / "cavities.png", dpi=130)
+    plt.close(figure)
+
+
+def plot_pv_curve(run, folder):
+    curve = run["pv_curve"]
+    ratio = curve["volume_ratio"][:]
+    figure, ax = plt.subplots(figsize=(5.5, 4.2), constrained_layout=True)
+    ax.plot(ratio, 1e-3 * curve["pressure"][:], ".", color=BLUE, label="equilibria")
+    ax.plot(ratio, 1e-3 * curve["line"][:], color=ORANGE, lw=1,
+            label=f"line: slope {1e-3 * curve['slope'][0]:.3g} kPa, R² {curve['r_squared'][0]:.4f}")
+    ax.plot(ratio, 1e-3 * curve["pieces"][:], color=GREY, lw=1, ls="--", label="piecewise fit")
+    ax.set(xlabel="volume ratio V/V₀", ylabel="pressure [kPa]", title="P-V curve")
+    ax.grid(alpha=0.3)
+    ax.legend(frameon=False, fontsize=8)
+    figure.savefig(folder / "pv_curve.png", dpi=130)
     plt.close(figure)
 
 
@@ -138,6 +196,12 @@ def main():
         if names(run) and len(run["history/time"]) > 1:
             plot_force(run, folder)
             written.append("force.png")
+        if "pv_curve" in run:
+            plot_pv_curve(run, folder)
+            written.append("pv_curve.png")
+        elif len(run["history/time"]) > 1 and ({"cavity", "boundary"} & set(run["history"])):
+            plot_cavities(run, folder)
+            written.append("cavities.png")
         if plot_cut(run, folder):
             written.append("cut.png")
     print("plotted", ", ".join(f"{folder}/{name}" for name in written) or "nothing")

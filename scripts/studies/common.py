@@ -27,3 +27,18 @@ def write_table(path, rows):
         writer.writerows(rows)
     for row in [rows[0].keys()] + [r.values() for r in rows]:
         print("  ".join(f"{str(cell):>16.16}" for cell in row))
+
+
+def mesh(geometry, name, **numbers):
+    """A mesh of meshes/GEOMETRY.geo with other numbers, below build/meshes; gives its path."""
+    path = f"build/meshes/{name}.msh"
+    words = [word for key, value in numbers.items() for word in ("-setnumber", key, str(value))]
+    subprocess.run(["gmsh", "-3", f"meshes/{geometry}.geo", *words, "-o", path, "-format", "msh41"],
+                   cwd=ROOT, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return path
+
+
+def last_field(folder):
+    """Displacement of the last field file of a run."""
+    with h5py.File(sorted((folder / "fields").glob("step_*.h5"))[-1]) as step:
+        return step["displacement"][:]

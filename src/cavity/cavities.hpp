@@ -106,6 +106,7 @@ class Cavities
   const Wall& wall(int i) const { return walls_[index(i)]; }
   bool any(Model model) const;
   bool follows() const { return any(Model::follower); }  ///< steps are iterated
+  bool exact() const { return follows() || any(Model::frozen); }  ///< volumes are those of the walls
 
   State start() const;
   /// Events and amounts of a step, decided before the solve: what the tips have opened, what is
