@@ -113,15 +113,15 @@ def path(folder):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--quick", action="store_true", help="three strains")
+    parser.add_argument("--quick", action="store_true", help="one strain")
     args = parser.parse_args()
     folder = ROOT / "results/kp_convergence_study"
     folder.mkdir(parents=True, exist_ok=True)
-    strains = [0.003, 0.03, 0.15] if args.quick else [0.003, 0.01, 0.03, 0.06, 0.1, 0.15]
+    strains = [0.03] if args.quick else [0.003, 0.01, 0.03, 0.06, 0.1, 0.15]
     rows = cold(folder, strains)
     write_table(folder / "updates.csv", rows)
     write_table(folder / "path.csv", path(folder))
-    figure, axes = plt.subplots(1, 3, figsize=(11, 3.8), constrained_layout=True, sharey=True)
+    figure, axes = plt.subplots(1, 3, figsize=(12.5, 3.8), constrained_layout=True, sharey=True)
     for axis, kind in zip(axes, ("point", "traction", "plate")):
         mine = [row for row in rows if row["load"] == kind]
         x = [row["strain_%"] for row in mine]
@@ -135,7 +135,7 @@ def main():
         axis.set(xscale="log", yscale="symlog", xlabel="strain [%]", title=kind)
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("pressure updates")
-    axes[2].legend(frameon=False, fontsize=7)
+    axes[2].legend(frameon=False, fontsize=7, loc="center left", bbox_to_anchor=(1.02, 0.5))
     figure.savefig(folder / "kp_convergence.png", dpi=130)
     print(f"wrote {folder}/updates.csv, path.csv and kp_convergence.png")
 

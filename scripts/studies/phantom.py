@@ -43,7 +43,7 @@ def draw(folder, run_folder):
         x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:]
     wall = wall_nodes(x, tets)
     ring = contour(x, wall, CENTRE[1])
-    figure, axes = plt.subplots(1, 4, figsize=(12, 3.4), constrained_layout=True, sharey=True)
+    figure, axes = plt.subplots(1, 4, figsize=(11, 3.8), constrained_layout=True, sharey=True)
     for step, axis in enumerate(axes):
         y = x + field(run_folder, step)
         loop = np.append(ring, ring[0])
@@ -51,20 +51,23 @@ def draw(folder, run_folder):
         axis.plot(1e3 * y[loop, 2], 1e3 * y[loop, 0], "o-", color="#1f5f8b", ms=3, label="deformed")
         axis.axhline(0, color="k", lw=2)
         axis.axhline(60 - 3 * step, color="#d9772b", lw=2)
-        axis.set(title=f"{3 * step} mm", xlabel="z [mm]", aspect="equal", ylim=(62, -2))
+        axis.set(title=f"{3 * step} mm", xlabel="z [mm]", xlim=(0, 50), ylim=(62, -2))
+        axis.set_aspect("equal")
     axes[0].set_ylabel("x [mm], probe above, stage below")
-    axes[0].legend(frameon=False, fontsize=8)
+    axes[0].legend(frameon=False, fontsize=8, loc="lower center")
     figure.savefig(folder / "contours.png", dpi=130)
     top = np.flatnonzero(np.abs(x[:, 1] - 0.05) < 1e-9)
     figure, axes = plt.subplots(1, 2, figsize=(9, 4), constrained_layout=True)
     for step, colour in ((1, "C0"), (2, "C1"), (3, "C2")):
         u = field(run_folder, step)
         axes[0].plot(1e3 * x[top, 0], -1e3 * u[top, 0], ".", ms=4, color=colour, label=f"{3 * step} mm")
-        axes[1].quiver(1e3 * x[top, 0], 1e3 * x[top, 2], 1e3 * u[top, 0], 1e3 * u[top, 2], angles="xy",
-                       scale_units="xy", scale=1, width=0.003, color=colour)
+        y = 1e3 * (x[top] + u[top])
+        axes[1].plot(y[:, 0], y[:, 2], "o", ms=3, mfc="none", color=colour)
+    axes[1].plot(1e3 * x[top, 0], 1e3 * x[top, 2], "k.", ms=2)
     axes[0].set(xlabel="x of the marker [mm]", ylabel="displacement to the probe [mm]", title="Markers on the top surface")
     axes[0].legend(frameon=False)
-    axes[1].set(xlabel="x [mm]", ylabel="z [mm]", title="Their motion", aspect="equal")
+    axes[1].set(xlabel="x [mm]", ylabel="z [mm]", title="Their places (dots: before)", xlim=(-3, 63), ylim=(-8, 58),
+                aspect="equal")
     figure.savefig(folder / "markers.png", dpi=130)
     plt.close("all")
 

@@ -106,7 +106,10 @@ class Cavities
   const Wall& wall(int i) const { return walls_[index(i)]; }
   bool any(Model model) const;
   bool follows() const { return any(Model::follower); }  ///< steps are iterated
-  bool exact() const { return follows() || any(Model::frozen); }  ///< volumes are those of the walls
+  bool exact() const
+  {
+    return follows() || any(Model::frozen);
+  }  ///< volumes are those of the walls
 
   State start() const;
   /// Events and amounts of a step, decided before the solve: what the tips have opened, what is
@@ -161,6 +164,19 @@ class Cavities
   double linear_volume(int i, const OwnedField& u) const;
   void set_gaps(const CavityRows& rows, constraint::Set& set) const;
   double given_pressure(int i, const TimeStep& now) const;
+
+  struct Miss
+  {
+    VecX volume;   ///< V - V_law [m³]
+    MatX slope;    ///< by the pressures [m³/Pa]
+    double worst;  ///< largest |V - V_law| / V_0
+  };
+  VecX proportional_step(const State& state, const Shape& shape, const TimeStep& now) const;
+  std::vector<law::VolumeCubic> cubics(const std::vector<int>& which, const Shape& shape,
+                                       const std::vector<OwnedField>& per_p) const;
+  Miss miss(const State& state, const std::vector<int>& which,
+            const std::vector<law::VolumeCubic>& cubics, const VecX& change,
+            const TimeStep& now) const;
 
   const fem::Space* space_;
   core::Ledger* ledger_;

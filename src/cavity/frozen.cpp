@@ -48,71 +48,86 @@ bool Cavities::proportional() const
   return false;
 }
 
+/// One step of the proportional control, p += K_p (V_law - V)/V_0.
+VecX Cavities::proportional_step(const State& state, const Shape& shape, const TimeStep& now) const
+{
+  const VecX V = volumes(shape);
+  const Fluid fluids = fluid(state, pressures(state), now);
+  const std::vector<int> which = frozen(state);
+  VecX p = pressures(state)(which);
+  for (std::size_t k = 0; k < which.size(); ++k)
+    p[static_cast<Eigen::Index>(k)] +=
+        gain(which[k]) * (fluids.volume[which[k]] - V[which[k]]) / walls_[index(which[k])].volume();
+  return p;
+}
+
+/// Cubics of the frozen cavities' volumes over changes of their pressures.
+std::vector<law::VolumeCubic> Cavities::cubics(const std::vector<int>& which, const Shape& shape,
+                                               const std::vector<OwnedField>& per_p) const
+{
+  std::vector<law::VolumeCubic> cubics;
+  for (int i : which) {
+    const Wall& wall = walls_[index(i)];
+    MatX y(wall.undeformed().size(), 1 + static_cast<Eigen::Index>(which.size()));
+    y.col(0) = shape[index(i)];
+    for (std::size_t k = 0; k < which.size(); ++k)
+      y.col(1 + static_cast<Eigen::Index>(k)) = wall.at_vertices(per_p[k], *space_);
+    cubics.emplace_back(wall.surface(), y);
+  }
+  return cubics;
+}
+
+/// What the volumes miss their fluids' by, and its slope, where the pressures have changed.
+Cavities::Miss Cavities::miss(const State& state, const std::vector<int>& which,
+                              const std::vector<law::VolumeCubic>& cubics, const VecX& change,
+                              const TimeStep& now) const
+{
+  VecX p = pressures(state);
+  p(which) += change;
+  const Fluid fluids = fluid(state, p, now);
+  Miss miss{VecX(change.size()), fluids.compliance(which, which), 0.0};
+  for (Eigen::Index k = 0; k < change.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    miss.volume[k] = cubics[at].value(change) - fluids.volume[which[at]];
+    miss.slope.row(k) += cubics[at].gradient(change);
+    miss.worst = std::max(miss.worst, std::abs(miss.volume[k]) / walls_[index(which[at])].volume());
+  }
+  return miss;
+}
+
 NextPressures Cavities::next_pressures(const State& state, const Shape& shape,
                                        const std::vector<OwnedField>& per_p,
                                        const TimeStep& now) const
 {
+  if (proportional()) return {proportional_step(state, shape, now)};
   const std::vector<int> which = frozen(state);
-  const auto count = static_cast<Eigen::Index>(which.size());
-  const VecX p0 = pressures(state);
-  const Solver solver = settings_.cavities[index(which.front())].solver;
-  VecX p = p0(which);
-  if (solver == Solver::proportional) {
-    const VecX V = volumes(shape);
-    const Fluid fluids = fluid(state, p0, now);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const int i = which[static_cast<std::size_t>(k)];
-      p[k] +=
-          settings_.cavities[index(i)].gain * (fluids.volume[i] - V[i]) / walls_[index(i)].volume();
-    }
-    return {p};
-  }
-  std::vector<law::VolumeCubic> cubics;
-  for (int i : which) {
-    MatX y(shape[index(i)].size(), 1 + count);
-    y.col(0) = shape[index(i)];
-    for (Eigen::Index k = 0; k < count; ++k)
-      y.col(1 + k) = walls_[index(i)].at_vertices(per_p[static_cast<std::size_t>(k)], *space_);
-    cubics.emplace_back(walls_[index(i)].surface(), y);
-  }
-  VecX change = VecX::Zero(count);
+  const std::string& name = settings_.cavities[index(which.front())].name;
+  const bool to_the_root = settings_.cavities[index(which.front())].solver == Solver::exact;
+  const std::vector<law::VolumeCubic> curves = cubics(which, shape, per_p);
+  const VecX p = pressures(state)(which);
+  VecX change = VecX::Zero(p.size()), step = change;
   double before = std::numeric_limits<double>::infinity();
-  VecX step = VecX::Zero(count);
   for (int iteration = 0; iteration < most_newton; ++iteration) {
-    VecX all = p0;
-    all(which) = p0(which) + change;
-    const Fluid fluids = fluid(state, all, now);
-    VecX miss(count);
-    MatX slope(count, count);
-    double worst = 0.0;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const int i = which[static_cast<std::size_t>(k)];
-      miss[k] = cubics[static_cast<std::size_t>(k)].value(change) - fluids.volume[i];
-      slope.row(k) = cubics[static_cast<std::size_t>(k)].gradient(change);
-      for (Eigen::Index l = 0; l < count; ++l)
-        slope(k, l) += fluids.compliance(i, which[static_cast<std::size_t>(l)]);
-      worst = std::max(worst, std::abs(miss[k]) / walls_[index(i)].volume());
-    }
-    if (worst <= 1e-15 || (worst >= before && worst <= 1e-14)) break;
-    if (worst > before) {  // too far: back by half
+    const Miss here = miss(state, which, curves, change, now);
+    if (here.worst <= 1e-15 || (here.worst >= before && here.worst <= 1e-14)) break;
+    if (here.worst > before) {  // too far: back by half
       step *= 0.5;
       change -= step;
-      if (step.norm() <= 1e-12 * (p0.norm() + change.norm()))
-        return {p, "cavity '" + settings_.cavities[index(which.front())].name +
-                       "': no pressure gives its fluid's volume"};
+      if (step.norm() <= 1e-12 * (p.norm() + change.norm()))
+        return {p, "cavity '" + name + "': no pressure gives its fluid's volume"};
       continue;
     }
     // V must grow with the pressure on the way from the last one.
-    const MatX symmetric = 0.5 * (slope + slope.transpose());
+    const MatX symmetric = 0.5 * (here.slope + here.slope.transpose());
     if (Eigen::LLT<MatX>(symmetric).info() != Eigen::Success)
       return {p,
-              "cavity '" + settings_.cavities[index(which.front())].name +
+              "cavity '" + name +
                   "': its volume does not grow with the pressure any more (limit point near p = " +
-                  core::shown(p0[which.front()] + change[0]) + " Pa)"};
-    before = worst;
-    step = slope.partialPivLu().solve(-miss);
+                  core::shown(p[0] + change[0]) + " Pa)"};
+    before = here.worst;
+    step = here.slope.partialPivLu().solve(-here.volume);
     change += step;
-    if (solver == Solver::newton) break;
+    if (!to_the_root) break;
   }
   return {p + change};
 }

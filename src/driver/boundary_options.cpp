@@ -52,6 +52,15 @@ std::map<int, Vec3> read_field(const std::string& file, const std::string& group
 
 }  // namespace
 
+std::optional<core::Csv> read_curve(const std::string& file, const base::Comm& comm)
+{
+  if (file.empty()) return std::nullopt;
+  core::Csv curve = read_csv(file, comm);
+  core::require_time_column(curve);
+  if (curve.columns.size() != 2) throw core::data_error(file + ": columns must be time,factor");
+  return curve;
+}
+
 tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mesh,
                                          const base::Comm& comm)
 {
@@ -70,17 +79,10 @@ tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mes
                                "_field: the group has one displacement for all nodes already");
     const bool moves = uniform || !field.empty();
     const bool pulls = options.given("boundary_<surf>_traction", group);
-    const std::string file = options.text("boundary_<surf>_curve", group);
-    std::optional<core::Csv> curve;
-    if (!file.empty()) {
-      if (!moves && !pulls)
-        throw core::option_error("option -boundary_" + group +
-                                 "_curve: the group has neither displacement nor traction");
-      curve = read_csv(file, comm);
-      core::require_time_column(*curve);
-      if (curve->columns.size() != 2)
-        throw core::data_error(file + ": columns must be time,factor");
-    }
+    const auto curve = read_curve(options.text("boundary_<surf>_curve", group), comm);
+    if (curve && !moves && !pulls)
+      throw core::option_error("option -boundary_" + group +
+                               "_curve: the group has neither displacement nor traction");
     if (moves) {
       mesh::group_nodes(mesh, group);
       boundary.displacements.push_back(

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/words.hpp"
+#include "driver/boundary_options.hpp"
 #include "driver/option_source.hpp"
 #include "mesh/hollow.hpp"
 
@@ -15,16 +16,6 @@ using core::Options;
 core::Failure bad(const std::string& option, const std::string& name, const std::string& why)
 {
   return core::option_error("option -" + option + " of '" + name + "': " + why);
-}
-
-/// A factor over time.
-std::optional<core::Csv> read_curve(const std::string& file, const base::Comm& comm)
-{
-  if (file.empty()) return std::nullopt;
-  core::Csv curve = read_csv(file, comm);
-  core::require_time_column(curve);
-  if (curve.columns.size() != 2) throw core::data_error(file + ": columns must be time,factor");
-  return curve;
 }
 
 law::MonotoneSpline read_table(const std::string& file, const std::string& name,
@@ -150,6 +141,37 @@ int cavity_index(const std::vector<cavity::CavitySettings>& cavities, const std:
                            core::did_you_mean(name, names));
 }
 
+void find_needle(const std::string& needle, const Scenario& scenario, cavity::EdgeSettings& edge)
+{
+  if (needle.empty()) return;
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < scenario.needles.size(); ++n) {
+    names.push_back(scenario.needles[n].name);
+    if (needle != names.back()) continue;
+    edge.needle = static_cast<int>(n);
+    edge.needle_radius = scenario.needles[n].section.outer;
+  }
+  if (edge.needle < 0)
+    throw bad("edge_needle", edge.name,
+              "no needle '" + needle + "'" + core::did_you_mean(needle, names));
+}
+
+/// Refuses what would have no effect.
+void check_edge(const cavity::EdgeSettings& edge)
+{
+  const bool hole = edge.hole_resistance > 0.0 || edge.hole_radius > 0.0;
+  if (edge.flow_curve && edge.flow == 0.0)
+    throw bad("edge_curve", edge.name, "there is no prescribed flow to be scaled");
+  if (edge.needle < 0 && (edge.gap > 0.0 || hole))
+    throw bad("edge_needle", edge.name, "gap and hole are a needle's: name it");
+  if (edge.resistance == 0.0 && edge.flow == 0.0 && edge.gap == 0.0 && !hole)
+    throw bad("edge_resistance", edge.name, "without resistance and flow the edge does nothing");
+  if (edge.hole_resistance > 0.0 && edge.hole_radius > 0.0)
+    throw bad("edge_hole_resistance", edge.name, "give a resistance or a radius, not both");
+  if (edge.resistance > 0.0 && edge.gap > 0.0)
+    throw bad("edge_gap", edge.name, "give a resistance or a gap, not both");
+}
+
 cavity::EdgeSettings read_edge(Options& options, const std::string& entry, const Scenario& scenario,
                                const base::Comm& comm)
 {
@@ -175,25 +197,8 @@ cavity::EdgeSettings read_edge(Options& options, const std::string& entry, const
   edge.hole_radius = real("hole_radius");
   edge.viscosity = real("viscosity");
   edge.length = real("length");
-  if (edge.flow_curve && edge.flow == 0.0)
-    throw bad("edge_curve", edge.name, "there is no prescribed flow to be scaled");
-  const std::string needle = options.text("edge_<edge>_needle", edge.name);
-  if (needle.empty() && (edge.gap > 0.0 || edge.hole_resistance > 0.0 || edge.hole_radius > 0.0))
-    throw bad("edge_needle", edge.name, "gap and hole are a needle's: name it");
-  if (needle.empty() && edge.resistance == 0.0 && edge.flow == 0.0)
-    throw bad("edge_resistance", edge.name, "without resistance and flow the edge does nothing");
-  if (edge.hole_resistance > 0.0 && edge.hole_radius > 0.0)
-    throw bad("edge_hole_resistance", edge.name, "give a resistance or a radius, not both");
-  std::vector<std::string> names;
-  for (std::size_t n = 0; n < scenario.needles.size(); ++n) {
-    names.push_back(scenario.needles[n].name);
-    if (needle != names.back()) continue;
-    edge.needle = static_cast<int>(n);
-    edge.needle_radius = scenario.needles[n].section.outer;
-  }
-  if (!needle.empty() && edge.needle < 0)
-    throw bad("edge_needle", edge.name,
-              "no needle '" + needle + "'" + core::did_you_mean(needle, names));
+  find_needle(options.text("edge_<edge>_needle", edge.name), scenario, edge);
+  check_edge(edge);
   return edge;
 }
 

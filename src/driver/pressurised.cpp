@@ -43,8 +43,43 @@ const std::vector<fem::OwnedField>& Simulation::unit_answers(const cavity::State
   return answers;
 }
 
-/// u = u_free + A⁻¹Hᵀλ + Σ p A⁻¹g_0, λ in the laws for these p, p such that the volumes are those
-/// of the fluids: pressures are updated until they are.
+/// Displacement per unit pressure when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
+std::vector<fem::OwnedField> Simulation::answers_with_rows(
+    const Pass& pass, const std::vector<fem::OwnedField>& per_p)
+{
+  std::vector<fem::OwnedField> answers = per_p;
+  if (pass.rows.set.empty()) return answers;
+  for (fem::OwnedField& w : answers) {
+    const core::VecX moved =
+        constraint::row_displacements(pass.rows.set, solve::read(pass.probes, w, space_));
+    const core::VecX more = law::response(pass.problem, pass.lambda.lambda, moved);
+    const core::VecX forces = constraint::probe_forces(pass.rows.set, more);
+    w.value += tissue_.answer(solve::spread(pass.probes, forces, space_)).value;
+  }
+  return answers;
+}
+
+/// u = u_free + A⁻¹Hᵀλ + Σ p A⁻¹g_0 for these pressures, λ in the laws.
+void Simulation::at_pressures(const fem::OwnedField& free,
+                              const std::vector<fem::OwnedField>& per_p,
+                              const fem::OwnedField& start, const core::VecX& last, Pass& pass,
+                              State& next, StepReport& report)
+{
+  const std::vector<int> which = cavities_->frozen(next.cavities);
+  fem::OwnedField u = free;
+  for (std::size_t k = 0; k < which.size(); ++k)
+    u.value += cavities_->pressures(next.cavities)[which[k]] * per_p[k].value;
+  if (!pass.rows.set.empty()) {
+    const core::VecX at_probes = solve::read(pass.probes, {u.value - start.value}, space_);
+    pass.trouble = solve_constraints(at_probes, last, pass, report);
+    if (pass.trouble) return;
+    u.value += tissue_.answer(solve::spread(pass.probes, pass.forces, space_)).value;
+  }
+  next.tissue.u = std::move(u);
+  ++report.passes;
+}
+
+/// The pressures of frozen cavities are updated until their volumes are those of their fluids.
 void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
                                   const core::VecX& last, Pass& pass, State& next,
                                   StepReport& report)
@@ -53,24 +88,14 @@ void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeM
   const fem::OwnedField free = tissue_.finish(tissue, {}, {});
   const std::vector<fem::OwnedField>& per_p = unit_answers(next.cavities, now);
   const std::vector<int> which = cavities_->frozen(next.cavities);
-  const bool rows = !pass.rows.set.empty();
-  if (rows) get_compliance(pass, report);
+  if (!pass.rows.set.empty()) get_compliance(pass, report);
   for (std::size_t k = 0; cavities_->proportional() && k < which.size(); ++k)
     if (cavities_->gain(which[k]) == 0.0)
       cavities_->set_gain(which[k], cavities_->line_gain(which[k], per_p[k]));
   cavities_->take({}, {}, now, next.cavities);
   for (int updates = 0;; ++updates) {
-    fem::OwnedField u = free;
-    for (std::size_t k = 0; k < which.size(); ++k)
-      u.value += cavities_->pressures(next.cavities)[which[k]] * per_p[k].value;
-    if (rows) {
-      pass.trouble = solve_constraints(solve::read(pass.probes, {u.value - start.value}, space_),
-                                       last, pass, report);
-      if (pass.trouble) return;
-      u.value += tissue_.answer(solve::spread(pass.probes, pass.forces, space_)).value;
-    }
-    next.tissue.u = std::move(u);
-    ++report.passes;
+    at_pressures(free, per_p, start, last, pass, next, report);
+    if (pass.trouble) return;
     report.pressure_updates = updates;
     const cavity::Shape shape = cavities_->shape(next.tissue.u);
     if (cavities_->closed(next.cavities, shape, now)) return;
@@ -79,20 +104,10 @@ void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeM
                      " updates of the pressure";
       return;
     }
-    std::vector<fem::OwnedField> all_in_all;  // per unit pressure, with what the rows answer
-    if (!cavities_->proportional()) all_in_all = per_p;
-    for (std::size_t k = 0; rows && k < all_in_all.size(); ++k) {
-      const core::VecX moved =
-          constraint::row_displacements(pass.rows.set, solve::read(pass.probes, per_p[k], space_));
-      const core::VecX answer = law::response(pass.problem, pass.lambda.lambda, moved);
-      all_in_all[k].value +=
-          tissue_
-              .answer(solve::spread(pass.probes, constraint::probe_forces(pass.rows.set, answer),
-                                    space_))
-              .value;
-    }
+    std::vector<fem::OwnedField> answers;
+    if (!cavities_->proportional()) answers = answers_with_rows(pass, per_p);
     const cavity::NextPressures pressures =
-        cavities_->next_pressures(next.cavities, shape, all_in_all, now);
+        cavities_->next_pressures(next.cavities, shape, answers, now);
     pass.trouble = pressures.trouble;
     if (pass.trouble) return;
     cavities_->set_pressures(which, pressures.p, next.cavities);

@@ -59,6 +59,33 @@ VecX straight_pieces(const std::vector<Point>& points, int pieces)
   return hats * hats.completeOrthogonalDecomposition().solve(p);
 }
 
+/// Curve and fits into run.h5, slope and R² of the line into the log.
+void write(const Simulation& simulation, Recorder& recorder, const Log& log,
+           const std::vector<Point>& points)
+{
+  std::vector<double> ratio, pressure;
+  for (const Point& point : points) {
+    ratio.push_back(point.ratio);
+    pressure.push_back(point.pressure);
+  }
+  const VecX line = straight_pieces(points, 1);
+  const VecX pieces = straight_pieces(points, simulation.scenario().pv.pieces);
+  const Eigen::Map<const VecX> p(pressure.data(), static_cast<Eigen::Index>(pressure.size()));
+  const double slope = (line[line.size() - 1] - line[0]) / (ratio.back() - ratio.front());
+  const double spread = (p.array() - p.mean()).square().sum();
+  const double R2 = spread > 0.0 ? 1.0 - (p - line).squaredNorm() / spread : 0.0;
+  const auto list = [](const VecX& v) {
+    return std::vector<double>(v.data(), v.data() + v.size());
+  };
+  recorder.table(simulation, "/pv_curve/volume_ratio", ratio, "1");
+  recorder.table(simulation, "/pv_curve/pressure", pressure, "Pa");
+  recorder.table(simulation, "/pv_curve/line", list(line), "Pa");
+  recorder.table(simulation, "/pv_curve/pieces", list(pieces), "Pa");
+  recorder.table(simulation, "/pv_curve/slope", {slope}, "Pa");
+  recorder.table(simulation, "/pv_curve/r_squared", {R2}, "1");
+  log.note("P-V curve: slope K_p = " + core::shown(slope) + " Pa, R^2 = " + core::shown(R2));
+}
+
 }  // namespace
 
 void run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const State& start)
@@ -88,27 +115,7 @@ void run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const St
   sweep(false);
   std::reverse(points.begin(), points.end());
   sweep(true);
-
-  std::vector<double> ratio, pressure;
-  for (const Point& point : points) {
-    ratio.push_back(point.ratio);
-    pressure.push_back(point.pressure);
-  }
-  const VecX line = straight_pieces(points, 1), pieces = straight_pieces(points, pv.pieces);
-  const Eigen::Map<const VecX> p(pressure.data(), static_cast<Eigen::Index>(pressure.size()));
-  const double slope = (line[line.size() - 1] - line[0]) / (ratio.back() - ratio.front());
-  const double spread = (p.array() - p.mean()).square().sum();
-  const double R2 = spread > 0.0 ? 1.0 - (p - line).squaredNorm() / spread : 0.0;
-  const auto list = [](const VecX& v) {
-    return std::vector<double>(v.data(), v.data() + v.size());
-  };
-  recorder.table(simulation, "/pv_curve/volume_ratio", ratio, "1");
-  recorder.table(simulation, "/pv_curve/pressure", pressure, "Pa");
-  recorder.table(simulation, "/pv_curve/line", list(line), "Pa");
-  recorder.table(simulation, "/pv_curve/pieces", list(pieces), "Pa");
-  recorder.table(simulation, "/pv_curve/slope", {slope}, "Pa");
-  recorder.table(simulation, "/pv_curve/r_squared", {R2}, "1");
-  log.note("P-V curve: slope K_p = " + core::shown(slope) + " Pa, R^2 = " + core::shown(R2));
+  write(simulation, recorder, log, points);
 }
 
 }  // namespace trocar::driver

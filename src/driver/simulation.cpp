@@ -209,7 +209,8 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
     residual = std::max(residual, needles_[i].relative_increment(again, lever));
   }
   if (!(residual <= balance_tolerance)) return false;
-  if (cavities_ && cavities_->exact() && !cavities_->closed(next.cavities, cavities_->shape(next.tissue.u), now))
+  if (cavities_ && cavities_->exact() &&
+      !cavities_->closed(next.cavities, cavities_->shape(next.tissue.u), now))
     return false;
   return gaps_closed(now, next, pass);
 }

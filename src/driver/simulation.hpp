@@ -153,6 +153,11 @@ class Simulation
                         core::VecX& last, StepReport& report);
   void meet_frozen_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
                         const core::VecX& last, Pass& pass, State& next, StepReport& report);
+  void at_pressures(const fem::OwnedField& free, const std::vector<fem::OwnedField>& per_p,
+                    const fem::OwnedField& start, const core::VecX& last, Pass& pass, State& next,
+                    StepReport& report);
+  std::vector<fem::OwnedField> answers_with_rows(const Pass& pass,
+                                                 const std::vector<fem::OwnedField>& per_p);
   const std::vector<fem::OwnedField>& unit_answers(const cavity::State& state,
                                                    const core::TimeStep& now);
   fem::OwnedField needle_forces(const Pass& pass) const;

@@ -118,25 +118,28 @@ bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push
   }
   const double most =
       lags() ? most_passes + current_->solver->sweeps_per_factor() : most_passes_of_own;
-  bool good = a.passes < most && std::isfinite(left);
-  if (good && rows && !(same_laws && a.on_rows))
+  bool leads_on = a.passes < most && std::isfinite(left);
+  if (leads_on && rows && !(same_laws && a.on_rows))
     change_rows(a, d, A_d, more, pushed, push, same_laws);
-  else if (good)
-    good = advance(a, std::move(d), std::move(A_d), std::move(more), push);
-  if (!good && lags()) {
-    give_up(motion);
-    return false;
-  }
-  if (!good) {
-    motion.trouble =
-        "no stable equilibrium under pressures that follow the tissue (limit point or buckling): "
-        "volume control passes limit points of the pressure";
+  else if (leads_on)
+    leads_on = advance(a, std::move(d), std::move(A_d), std::move(more), push);
+  if (!leads_on) {
+    end_approach(motion);
     return false;
   }
   motion.base = a.u;
   motion.pushed = a.lambda;
   motion.half = begin(a.residual);
   return false;
+}
+
+/// An approach that does not lead on: its factor is too old, or there is nothing to come to.
+void Tissue::end_approach(FreeMotion& motion)
+{
+  if (lags()) return give_up(motion);
+  motion.trouble =
+      "no stable equilibrium under pressures that follow the tissue (limit point or buckling): "
+      "volume control passes limit points of the pressure";
 }
 
 /// A step on which rows begin to hold or slip. The energy is convex and d a proximal step in the

@@ -190,6 +190,7 @@ class Tissue
                    bool same_laws) const;
   bool advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
                const Push& push) const;
+  void end_approach(FreeMotion& motion);
   OwnedField operate(const Approach& approach, const OwnedField& d) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
                     const TimeStep& step, double* scale,

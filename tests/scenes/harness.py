@@ -29,6 +29,15 @@ def small_block():
     return structured("small_block", *"--nodes 7 5 5 --size 0.06 0.04 0.04 --split 5".split())
 
 
+def geometry(name):
+    """Makes the mesh of meshes/NAME.geo and gives its path."""
+    path = os.path.join(MESHES, name + ".msh")
+    if not os.path.exists(path):
+        subprocess.run(["gmsh", "-3", os.path.join(ROOT, "meshes", name + ".geo"), "-o", path, "-format",
+                        "msh41"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return path
+
+
 def options(file):
     """Options of a file in options/ as a dict."""
     found = {}

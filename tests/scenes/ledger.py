@@ -1,7 +1,8 @@
 """The work ledger: a scene pays only for what it uses."""
 import os
 
-from harness import check, completed, finish, histories, ledger, options, run, small_block
+from harness import (check, completed, finish, geometry, histories, ledger, options, run,
+                     small_block)
 
 small = options("small_insertion.opts")
 small["-mesh"] = small_block()
@@ -80,7 +81,34 @@ for steps in (1, 5):
         check(plain["compliance/leftover_gap"].max() == gap, "asking for the error changes nothing")
         check(1e-9 < gap < 1e-3 and 1e-9 < error < 1e-3,
               f"stale: gap off by {gap:.1e} m, displacement by {error:.1e} m")
+work = ledger(completed(small))
+check(work["surface_passes"] == 0 and work["pressure_updates"] == 0, "no cavity: no pass over a wall")
+phantom = options("phantom.opts")
+phantom["-mesh"] = geometry("phantom")
+for model in ("linear", "frozen"):
+    folder = completed({**phantom, "-cavity_model": model})
+    work, steps = ledger(folder), 4
+    check(work["factorisations"] == 1 and work["assemblies"] == 1, f"{model}: one factorisation")
+    if model == "linear":
+        check(work["columns_built"] == 1 and work["constraint_solves"] == steps,
+              "linear: one column for ever, one dense solve per equilibrium")
+        check(work["half_sweeps"] == 2 * steps and work["surface_passes"] == 1 + steps,
+              "linear: one sweep per equilibrium, one pass over the wall for the report")
+    else:
+        check(work["columns_built"] == 0 and work["constraint_solves"] == 0, "frozen: no dense problem")
+        check(work["half_sweeps"] == 2 * steps + 2, "frozen: one sweep more in all, for A^-1 g_0")
+        check(work["pressure_updates"] == 3, f"exact: one update for each load ({work['pressure_updates']})")
+folder = completed(phantom)
+work = ledger(folder)
+linearisations = histories(folder)["time_linearisations"].sum()
+check(work["factorisations"] == 1, "follower: the factor is kept")
+check(work["columns_built"] == linearisations, "follower: one column per linearisation, the wall's new slope")
+given = {**phantom, "-cavity_model": "linear", "-cavity_pocket_law": "pressure",
+         "-cavity_pocket_pressure": "100"}
+work = ledger(completed(given))
+check(work["constraint_solves"] == 0 and work["columns_built"] == 0, "a given pressure is a load: no row")
+
 keys = {"assemblies", "factorisations", "solves", "half_sweeps", "columns_built", "columns_reused",
-        "constraint_solves", "contact_queries", "stress_evaluations", "steps", "rejected_steps"}
+        "constraint_solves", "contact_queries", "surface_passes", "pressure_updates", "stress_evaluations", "steps", "rejected_steps"}
 check(set(work) == keys, "the ledger holds every count of the contract")
 finish()
