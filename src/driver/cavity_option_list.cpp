@@ -19,8 +19,10 @@ std::vector<OptionSpec> cavity_options()
       {"cavity_mean", OptionType::real, "0", "Pa", "mean pressure of law pulse"},
       {"cavity_amplitude", OptionType::real, "0", "Pa", "amplitude of law pulse (a sine)"},
       positive("cavity_period", "1", "s", "period of law pulse"),
-      word("cavity_table", "",
-           "CSV (columns pressure,volume in Pa, m^3; volumes nowhere rising) of law table"),
+      word(
+          "cavity_table", "",
+          "CSV (columns pressure,volume in Pa, m^3; nowhere rising, only differences count) of law "
+          "table"),
       positive("cavity_bulk_modulus", "2.2e9", "Pa", "bulk modulus of law bulk"),
       positive("cavity_ambient_pressure", "101325", "Pa",
                "absolute pressure where pressures are 0, for law gas"),

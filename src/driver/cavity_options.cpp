@@ -97,6 +97,8 @@ void read_model(Options& options, cavity::CavitySettings& one, tissue::Model tis
                  : solver == "newton"     ? cavity::Solver::newton
                                           : cavity::Solver::exact;
   one.gain = options.real("cavity_<cavity>_gain", one.name);
+  if (options.given_for("cavity_<cavity>_gain", one.name) && solver != "proportional")
+    throw bad("cavity_gain", one.name, "only -cavity_solver proportional has a gain");
   one.tolerance = options.real("cavity_<cavity>_tolerance", one.name);
   one.most_updates = options.integer("cavity_<cavity>_max_updates", one.name);
 }
@@ -250,6 +252,9 @@ void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
     cavities.push_back(std::move(one));
   }
   require_one_way(cavities);
+  if (!cavities.empty() && scenario.tissue.reuse == solve::Reuse::stale)
+    throw core::option_error(
+        "option -compliance_reuse stale: not with cavities, whose volumes would be missed");
   for (const std::string& entry : options.names("edges"))
     scenario.cavities.edges.push_back(read_edge(options, entry, scenario, comm));
   read_pv_curve(options, scenario);

@@ -92,9 +92,12 @@ void Log::step(int number, const State& state, const StepReport& report)
     friction_ -= needle.coupling.friction_work;
     cutting_ -= needle.coupling.cutting_work;
   }
-  if (lines_++ % 40 == 0)
-    std::printf("%6s %10s %10s %6s %6s %10s %12s %8s\n", "step", "time [s]", "depth [mm]", "rows",
-                "iters", "resid [m]", "base [N]", "ETA [s]");
+  if (lines_++ % 40 == 0) {
+    std::printf("%6s %10s %10s %6s %6s %10s %12s ", "step", "time [s]", "depth [mm]", "rows",
+                "iters", "resid [m]", "base [N]");
+    if (!report.cavities.empty()) std::printf("%12s ", "p [Pa]");
+    std::printf("%8s\n", "ETA [s]");
+  }
   double depth = 0.0, force = 0.0;
   for (const NeedleReport& needle : report.needles) {
     depth = std::max(depth, needle.depth);
@@ -104,6 +107,7 @@ void Log::step(int number, const State& state, const StepReport& report)
   const double eta = state.t > 0.0 ? watch_.seconds() * (end - state.t) / state.t : std::nan("");
   std::printf("%6d %10.4f %10.3f %6d %6d %10.2e %12.5f ", number, state.t, 1e3 * depth, report.rows,
               report.iterations, report.residual, force);
+  if (!report.cavities.empty()) std::printf("%12.2f ", report.cavities.front().pressure);
   if (std::isfinite(eta))
     std::printf("%8.1f\n", eta);
   else

@@ -34,12 +34,14 @@ const std::vector<fem::OwnedField>& Simulation::unit_answers(const cavity::State
                                                              const core::TimeStep& now)
 {
   constexpr std::size_t most_kept = 2;
+  const std::vector<int> which = cavities_->frozen(state);
   const auto known = unit_answers_.find(now.inverse());
-  if (known != unit_answers_.end()) return known->second;
+  // Pressures that are given at the start only join later.
+  if (known != unit_answers_.end() && known->second.size() == which.size()) return known->second;
   if (unit_answers_.size() == most_kept) unit_answers_.clear();
   std::vector<fem::OwnedField>& answers = unit_answers_[now.inverse()];
-  for (int cavity : cavities_->frozen(state))
-    answers.push_back(tissue_.answer(cavities_->unit_load(cavity)));
+  answers.clear();
+  for (int cavity : which) answers.push_back(tissue_.answer(cavities_->unit_load(cavity)));
   return answers;
 }
 

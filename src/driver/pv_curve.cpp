@@ -104,11 +104,12 @@ void run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const St
       StepReport report;
       state = at_ratio(simulation, std::move(state), before, ratio, 0, report);
       before = ratio;
-      state.t = static_cast<double>(++number);
       ++simulation.ledger().steps;
-      recorder.record(simulation, state, report, number,
+      State shown = state;
+      shown.t = static_cast<double>(++number);
+      recorder.record(simulation, shown, report, number,
                       simulation.space().comm().max(watch.seconds()), true);
-      log.step(number, state, report);
+      log.step(number, shown, report);
       points.push_back({ratio, report.cavities[static_cast<std::size_t>(pv.cavity)].pressure});
     }
   };

@@ -53,8 +53,10 @@ StepResult Simulation::initial_state()
   for (std::size_t i = 0; i < needles_.size(); ++i)
     result.report.needles.push_back(
         {state.needles[i].shaft.tip(), insertion_->depth(state.insertions[i]), {}, {}});
-  if (cavities_)
+  if (cavities_) {
+    cavities_->take({}, {}, {}, result.state->cavities);
     result.report.cavities = cavities_->accept(result.state->cavities, state.tissue.u, {});
+  }
   result.report.tools.assign(scenario_.tissue.boundary.displacements.size(), Vec3::Zero());
   return result;
 }

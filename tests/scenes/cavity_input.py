@@ -133,6 +133,10 @@ for model, solver in (("linear", "exact"), ("linear", "proportional"), ("followe
                       ("follower", "proportional")):
     refuses(f"{model} with {solver}", 64, ["-cavity_solver", solver, model],
             {"-cavity_model": model, "-cavity_solver": solver})
+refuses("gain without control", 64, ["-cavity_gain", "proportional"],
+        {"-cavity_model": "frozen", "-cavity_hole_gain": "1e4"})
+refuses("stale columns", 64, ["-compliance_reuse stale", "cavities"],
+        {"-tissue_model": "corotational", "-compliance_reuse": "stale"})
 refuses("gain that cannot converge", 70, ["not reached in 50 updates"],
         {"-cavity_model": "frozen", "-cavity_solver": "proportional", "-cavity_hole_gain": "1e9",
          "-cavity_max_updates": "50"}, ranks=(1, 3))

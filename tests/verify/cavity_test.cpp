@@ -303,6 +303,28 @@ TEST(Network, TwoCavitiesMeet)
   }
 }
 
+// Injection: the volume grows by what is pumped in, whatever the pressure does.
+TEST(Network, InjectionIsKept)
+{
+  for (Model model : {Model::frozen, Model::follower}) {
+    driver::Scenario scenario = test::cavity_scenario(5, 3, model, Solver::exact);
+    cavity::EdgeSettings pump;
+    pump.name = "pump";
+    pump.to = 0;
+    pump.flow = 2e-6;
+    pump.flow_curve = core::parse_csv("time,factor\n0,0\n1,1\n2,0\n", "test");
+    scenario.cavities.edges = {pump};
+    scenario.time.step = 0.25;
+    scenario.time.end = 2.0;
+    const test::Run run = test::run(scenario);
+    // Sum of backward Euler: 0.25 s · (0.25 + 0.5 + 0.75 + 1 + 0.75 + 0.5 + 0.25) = 1 s.
+    EXPECT_NEAR(run.states.back().cavities.edge[0].moved, 2e-6, 1e-18);
+    EXPECT_NEAR(run.reports.back().cavities[0].volume - run.reports.front().cavities[0].volume,
+                2e-6, 1e-11 * 2.7e-5);
+    EXPECT_GT(run.reports.back().cavities[0].pressure, 100.0);
+  }
+}
+
 // A valve lets fluid out and none in; gas and valve are laws that the dense problem settles.
 TEST(Network, ValveAndGas)
 {

@@ -206,5 +206,34 @@ TEST(FollowerSphere, LimitPoint)
   EXPECT_NE(lost.why.find("limit point"), std::string::npos) << lost.why;
 }
 
+// A frozen tube: V/V_0 = (1 + p/2G)² in an infinite body, so that it cannot be drained of more than
+// it holds: the step is refused with that reason.
+TEST(FrozenTube, LosesItsRoot)
+{
+  driver::Scenario scenario =
+      statics(test::tube(16, 2, 6, 0.01, 0.025, 0.008), cavity::Model::frozen);
+  scenario.tissue.boundary.fixed = {{"ends", 4}, {"on_x", 2}, {"on_y", 1}};
+  cavity::CavitySettings& one = scenario.cavities.cavities[0];
+  one.solver = cavity::Solver::exact;
+  one.caps = true;
+  cavity::EdgeSettings pump;
+  pump.name = "pump";
+  pump.from = 0;
+  pump.flow = 0.3 * cavity::Wall(scenario.mesh, "wall", true).volume();
+  scenario.cavities.edges = {pump};
+  scenario.time.step = 1.0;
+  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  driver::StepResult result = simulation.initial_state();
+  for (int n = 1; n <= 3; ++n) {
+    ASSERT_TRUE(result.state) << result.why;
+    EXPECT_NEAR(result.report.cavities[0].volume / (pump.flow / 0.3), 1.0 - 0.3 * (n - 1), 1e-11);
+    result = simulation.equilibrium(*result.state, {1.0 * n, 1.0, true});
+  }
+  ASSERT_TRUE(result.state) << result.why;  // 10 % are left
+  result = simulation.equilibrium(*result.state, {4.0, 1.0, true});
+  ASSERT_FALSE(result.state);
+  EXPECT_NE(result.why.find("cavity 'fluid'"), std::string::npos) << result.why;
+}
+
 }  // namespace
 }  // namespace trocar
