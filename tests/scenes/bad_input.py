@@ -2,28 +2,14 @@
 import os
 import stat
 
-from harness import FOLDER, check, error_lines, finish, options, run, small_block, structured
+from harness import (FOLDER, check, error_lines, finish, options, refusal, run, small_block,
+                     structured, written)
 
 small = options("small_insertion.opts")
 small.update({"-mesh": small_block(), "-output_dir": os.path.join(FOLDER, "bad"), "-time_end": "0.1"})
 
 
-def written(name, text):
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as stream:
-        stream.write(text)
-    return path
-
-
-def refuses(what, code, words, changes, remove=(), ranks=(2,)):
-    settings = {key: value for key, value in {**small, **changes}.items() if key not in remove}
-    for n in ranks:
-        process = run(settings, n, timeout=60)
-        lines = error_lines(process)
-        good = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
-        check(good, f"{what} on {n} ranks: {process.returncode} {lines}")
-
-
+refuses = refusal(small)
 tet = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"a\"\n$EndPhysicalNames\n"
        "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
        "$Elements\n1\n77 4 2 1 1 CORNERS\n$EndElements\n")

@@ -2,7 +2,7 @@
 import itertools
 import os
 
-from harness import FOLDER, MESHES, check, completed, error_lines, finish, histories, run
+from harness import FOLDER, MESHES, check, completed, finish, histories, refusal, written
 
 KUHN = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
 
@@ -55,28 +55,13 @@ def block(name, holes, edit=lambda groups: None, n=4, filled=False):
     return path
 
 
-def written(name, text):
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as stream:
-        stream.write(text)
-    return path
-
-
 ONE = {(1, 1, 1), (2, 1, 1)}
 good = {"-mesh": block("good", ONE), "-fix": "bottom", "-tissue_model": "linear", "-tissue_poisson": "0.4",
         "-analysis": "static", "-boundary_top_displacement": "0,0,-0.002", "-cavities": "hole",
         "-cavity_hole_surface": "wall", "-output_dir": os.path.join(FOLDER, "bad")}
 
 
-def refuses(what, code, words, changes, remove=(), ranks=(2,)):
-    settings = {key: value for key, value in {**good, **changes}.items() if key not in remove}
-    for count in ranks:
-        process = run(settings, count, timeout=60)
-        lines = error_lines(process)
-        right = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
-        check(right, f"{what} on {count} ranks: {process.returncode} {lines}")
-
-
+refuses = refusal(good)
 pressure = histories(completed(good))["cavity/hole/pressure"][-1]
 check(pressure > 10.0, f"the good one runs: {pressure:.1f} Pa")
 filled = {**good, "-mesh": block("filled", ONE, filled=True), "-cavity_hole_region": "fluid"}

@@ -69,6 +69,26 @@ def completed(settings, ranks=1, **more):
     return folder
 
 
+def written(name, text):
+    """A file in the test's folder; gives its path."""
+    path = os.path.join(FOLDER, name)
+    with open(path, "w") as stream:
+        stream.write(text)
+    return path
+
+
+def refusal(scene):
+    """A check that changes of a scene are refused with a code and one line holding all words."""
+    def refuses(what, code, words, changes, remove=(), ranks=(2,)):
+        settings = {key: value for key, value in {**scene, **changes}.items() if key not in remove}
+        for n in ranks:
+            process = run(settings, n, timeout=60)
+            lines = error_lines(process)
+            good = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
+            check(good, f"{what} on {n} ranks: {process.returncode} {lines}")
+    return refuses
+
+
 def histories(folder):
     """All histories but wall times, by name."""
     found = {}
