@@ -47,7 +47,8 @@ State Cavities::start() const
   for (int i = 0; i < size(); ++i) {
     const CavitySettings& one = settings_.cavities[index(i)];
     CavityState cavity;
-    cavity.amount = one.volume > 0.0 ? one.volume : walls_[index(i)].volume();
+    cavity.whole = one.volume > 0.0 ? one.volume : walls_[index(i)].volume();
+    cavity.amount = cavity.whole;
     if (one.volume_curve) cavity.amount *= core::interpolate(*one.volume_curve, 1, 0.0);
     cavity.given =
         one.fluid.kind == law::FluidLaw::Kind::pressure || one.initial_pressure.has_value();
@@ -57,34 +58,43 @@ State Cavities::start() const
   return state;
 }
 
-State Cavities::advance(const State& old, double t_old, double t, const std::vector<Tip>& tips,
-                        const OwnedField& u) const
+/// The first of these stretches that lies inside the wall; null: none.
+const VoidPiece* Cavities::entered(int cavity, const std::vector<VoidPiece>& voids,
+                                   const Shape& shape) const
+{
+  const Wall& wall = walls_[index(cavity)];
+  for (const VoidPiece& piece : voids)
+    if (wall.holds(piece.place - wall.reference(), shape[index(cavity)])) return &piece;
+  return nullptr;
+}
+
+State Cavities::advance(const State& old, double t_old, double t,
+                        const std::vector<std::vector<VoidPiece>>& voids, const OwnedField& u) const
 {
   State next = old;
   for (int i = 0; i < size(); ++i) {
-    const CavitySettings& one = settings_.cavities[index(i)];
-    if (!one.volume_curve) continue;
-    const double whole = one.volume > 0.0 ? one.volume : walls_[index(i)].volume();
-    next.cavity[index(i)].amount += whole * (core::interpolate(*one.volume_curve, 1, t) -
-                                             core::interpolate(*one.volume_curve, 1, t_old));
+    const auto& curve = settings_.cavities[index(i)].volume_curve;
+    CavityState& mine = next.cavity[index(i)];
+    if (curve)
+      mine.amount +=
+          mine.whole * (core::interpolate(*curve, 1, t) - core::interpolate(*curve, 1, t_old));
   }
+  Shape now;  // looked at only when a needle is in some void
   for (std::size_t e = 0; e < settings_.edges.size(); ++e) {
     const EdgeSettings& edge = settings_.edges[e];
     if (edge.needle < 0) continue;
-    const Tip& tip = tips[index(edge.needle)];
     EdgeState& state = next.edge[e];
-    state.needle_in = state.needle_in && tip.arc >= state.wall_arc;
-    if (tip.in_tissue || state.needle_in) continue;
+    const std::vector<VoidPiece>& mine = voids[index(edge.needle)];
+    state.needle_in = !mine.empty();  // and in every cavity that the edge joins
+    if (mine.empty()) continue;
+    if (now.empty()) now = shape(u);
     for (int i : {edge.from, edge.to}) {
       if (i < 0) continue;
-      const Wall& wall = walls_[index(i)];
-      const VecX x = wall.undeformed() + wall.at_vertices(u, *space_);
-      ++ledger_->surface_passes;
-      if (!wall.holds(tip.position - wall.reference(), x)) continue;
-      state.pierced = state.needle_in = true;
-      state.wall_arc = tip.wall_arc;
-      state.channel = tip.channel;
+      const VoidPiece* piece = entered(i, mine, now);
+      state.needle_in = state.needle_in && piece;
+      if (piece && !state.pierced) state.channel = piece->channel;
     }
+    state.pierced = state.pierced || state.needle_in;
   }
   return next;
 }

@@ -21,6 +21,7 @@ struct CavityState
 {
   double pressure = 0.0;        ///< at the reference point of its wall [Pa]
   double amount = 0.0;          ///< V_f: volume of the fluid at its reference pressure [m³]
+  double whole = 0.0;           ///< amount that a curve scales [m³]
   double start_pressure = 0.0;  ///< [Pa]
   double reference = 0.0;       ///< pressure at which the fluid takes its amount [Pa]
   bool given = false;           ///< the pressure is given: always, or only at the start
@@ -30,8 +31,7 @@ struct EdgeState
 {
   bool pierced = false;    ///< a needle came through
   bool needle_in = false;  ///< and is still there
-  double wall_arc = 0.0;   ///< where its path left the tissue [m]
-  double channel = 0.0;    ///< tissue that it went through [m]
+  double channel = 0.0;    ///< tissue that it went through up to the wall [m]
   double flow = 0.0;       ///< [m³/s]
   double moved = 0.0;      ///< since the start [m³]
 };
@@ -42,14 +42,11 @@ struct State
   std::vector<EdgeState> edge;
 };
 
-/// Where a needle's tip is.
-struct Tip
+/// A stretch of a needle's path that lies in no tissue.
+struct VoidPiece
 {
-  Vec3 position = Vec3::Zero();  ///< [m]
-  bool in_tissue = true;
-  double arc = 0.0;       ///< of the tip along its path [m]
-  double wall_arc = 0.0;  ///< where the path last left the tissue [m]
-  double channel = 0.0;   ///< length of the path in tissue up to there [m]
+  Vec3 place;      ///< on the needle, in the stretch [m]
+  double channel;  ///< length of the path in tissue up to it [m]
 };
 
 /// Volume and compliance of the fluids at given pressures, the network over a step included.
@@ -57,6 +54,7 @@ struct Fluid
 {
   VecX volume;      ///< V_law(p) (cavities) [m³]
   MatX compliance;  ///< D = -∂V_law/∂p, symmetric positive semidefinite [m³/Pa]
+  VecX round_off;   ///< of the volume: flows are differences of pressures (cavities) [m³]
 };
 
 /// Coordinates of all walls' vertices, each from its reference point [m].
@@ -72,6 +70,13 @@ struct CavityRows
   Fluid fluid;    ///< there
   State state;    ///< that the fluids were linearised for
   TimeStep now;
+};
+
+/// How tissue and rows answer to the pressures of frozen cavities.
+struct PressureAnswers
+{
+  std::vector<OwnedField> per_p;  ///< displacement per unit of every one [m/Pa]
+  VecX gain;                      ///< K_p of the proportional solver [Pa]
 };
 
 /// Pressures of frozen cavities, or why there are none.
@@ -112,10 +117,11 @@ class Cavities
   }  ///< volumes are those of the walls
 
   State start() const;
-  /// Events and amounts of a step, decided before the solve: what the tips have opened, what is
-  /// injected by curves. `u`: displacement at the start of the step. Collective.
-  State advance(const State& old, double t_old, double t, const std::vector<Tip>& tips,
-                const OwnedField& u) const;
+  /// Events and amounts of a step, decided before the solve: what the needles have opened, what is
+  /// injected by curves. `voids`: by needle; `u`: displacement at the start of the step.
+  /// Collective.
+  State advance(const State& old, double t_old, double t,
+                const std::vector<std::vector<VoidPiece>>& voids, const OwnedField& u) const;
 
   Shape shape(const OwnedField& u) const;    ///< collective: one pass over the walls' nodes
   VecX volumes(const Shape& shape) const;    ///< [m³]
@@ -142,24 +148,23 @@ class Cavities
   // Cavities of the frozen model: their pressures are found outside the constraint system.
   std::vector<int> frozen(const State& state) const;
   OwnedField unit_load(int cavity) const;  ///< g_0 [m²]: force of a unit pressure
-  /// Next pressures of the frozen cavities from where the walls are, and the displacement per unit
-  /// of every frozen pressure (not used by the proportional solver). Collective.
+  /// Next pressures of the frozen cavities from where the walls are. Collective.
   NextPressures next_pressures(const State& state, const Shape& shape,
-                               const std::vector<OwnedField>& per_p, const TimeStep& now) const;
+                               const PressureAnswers& answers, const TimeStep& now) const;
   static void set_pressures(const std::vector<int>& which, const VecX& p, State& state);
   int most_updates() const;   ///< of pressures in one step
   bool proportional() const;  ///< the solver of the frozen cavities
   /// Slope dP/d(V/V_0) of the line through V(p) between 0.7 and 1.3 V_0 [Pa]; `per_p`: displacement
   /// per unit pressure, everything else at rest. Collective.
   double line_gain(int cavity, const OwnedField& per_p) const;
-  double gain(int cavity) const { return settings_.cavities[index(cavity)].gain; }
-  void set_gain(int cavity, double gain) { settings_.cavities[index(cavity)].gain = gain; }
   /// For P-V curves: the cavity holds this volume, whatever its law. Not collective.
   void hold_volume(int cavity, double volume, State& state);
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   law::Edge edge(int e, const State& state, double t) const;
+  const VoidPiece* entered(int cavity, const std::vector<VoidPiece>& voids,
+                           const Shape& shape) const;
   VecX gradient(int i, const Shape& shape) const;
   double linear_volume(int i, const OwnedField& u) const;
   void set_gaps(const CavityRows& rows, constraint::Set& set) const;
@@ -167,11 +172,14 @@ class Cavities
 
   struct Miss
   {
-    VecX volume;   ///< V - V_law [m³]
-    MatX slope;    ///< by the pressures [m³/Pa]
-    double worst;  ///< largest |V - V_law| / V_0
+    VecX volume;       ///< V - V_law [m³]
+    MatX slope;        ///< by the pressures [m³/Pa]
+    double worst;      ///< largest |V - V_law| / V_0
+    int at;            ///< of this cavity
+    double round_off;  ///< of that
   };
-  VecX proportional_step(const State& state, const Shape& shape, const TimeStep& now) const;
+  VecX proportional_step(const State& state, const Shape& shape, const VecX& gain,
+                         const TimeStep& now) const;
   std::vector<law::VolumeCubic> cubics(const std::vector<int>& which, const Shape& shape,
                                        const std::vector<OwnedField>& per_p) const;
   Miss miss(const State& state, const std::vector<int>& which,

@@ -49,15 +49,17 @@ bool Cavities::proportional() const
 }
 
 /// One step of the proportional control, p += K_p (V_law - V)/V_0.
-VecX Cavities::proportional_step(const State& state, const Shape& shape, const TimeStep& now) const
+VecX Cavities::proportional_step(const State& state, const Shape& shape, const VecX& gain,
+                                 const TimeStep& now) const
 {
   const VecX V = volumes(shape);
   const Fluid fluids = fluid(state, pressures(state), now);
   const std::vector<int> which = frozen(state);
   VecX p = pressures(state)(which);
   for (std::size_t k = 0; k < which.size(); ++k)
-    p[static_cast<Eigen::Index>(k)] +=
-        gain(which[k]) * (fluids.volume[which[k]] - V[which[k]]) / walls_[index(which[k])].volume();
+    p[static_cast<Eigen::Index>(k)] += gain[static_cast<Eigen::Index>(k)] *
+                                       (fluids.volume[which[k]] - V[which[k]]) /
+                                       walls_[index(which[k])].volume();
   return p;
 }
 
@@ -85,45 +87,51 @@ Cavities::Miss Cavities::miss(const State& state, const std::vector<int>& which,
   VecX p = pressures(state);
   p(which) += change;
   const Fluid fluids = fluid(state, p, now);
-  Miss miss{VecX(change.size()), fluids.compliance(which, which), 0.0};
+  Miss miss{VecX(change.size()), fluids.compliance(which, which), 0.0, 0, 0.0};
   for (Eigen::Index k = 0; k < change.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
     miss.volume[k] = cubics[at].value(change) - fluids.volume[which[at]];
     miss.slope.row(k) += cubics[at].gradient(change);
-    miss.worst = std::max(miss.worst, std::abs(miss.volume[k]) / walls_[index(which[at])].volume());
+    const double V0 = walls_[index(which[at])].volume();
+    miss.round_off = std::max(miss.round_off, fluids.round_off[which[at]] / V0);
+    if (std::abs(miss.volume[k]) / V0 < miss.worst) continue;
+    miss.worst = std::abs(miss.volume[k]) / V0;
+    miss.at = static_cast<int>(k);
   }
   return miss;
 }
 
 NextPressures Cavities::next_pressures(const State& state, const Shape& shape,
-                                       const std::vector<OwnedField>& per_p,
-                                       const TimeStep& now) const
+                                       const PressureAnswers& answers, const TimeStep& now) const
 {
-  if (proportional()) return {proportional_step(state, shape, now)};
+  if (proportional()) return {proportional_step(state, shape, answers.gain, now)};
   const std::vector<int> which = frozen(state);
-  const std::string& name = settings_.cavities[index(which.front())].name;
   const bool to_the_root = settings_.cavities[index(which.front())].solver == Solver::exact;
-  const std::vector<law::VolumeCubic> curves = cubics(which, shape, per_p);
+  const std::vector<law::VolumeCubic> curves = cubics(which, shape, answers.per_p);
   const VecX p = pressures(state)(which);
+  const auto trouble = [&](const Miss& here, const std::string& what) -> NextPressures {
+    const int cavity = which[static_cast<std::size_t>(here.at)];
+    return {p, "cavity '" + settings_.cavities[index(cavity)].name + "': " + what};
+  };
   VecX change = VecX::Zero(p.size()), step = change;
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_newton; ++iteration) {
     const Miss here = miss(state, which, curves, change, now);
-    if (here.worst <= 1e-15 || (here.worst >= before && here.worst <= 1e-14)) break;
+    const double enough = 1e-14 + here.round_off;
+    if (here.worst <= 1e-15 || (here.worst >= before && here.worst <= enough)) break;
     if (here.worst > before) {  // too far: back by half
       step *= 0.5;
       change -= step;
       if (step.norm() <= 1e-12 * (p.norm() + change.norm()))
-        return {p, "cavity '" + name + "': no pressure gives its fluid's volume"};
+        return trouble(here, "no pressure gives its fluid's volume");
       continue;
     }
     // V must grow with the pressure on the way from the last one.
     const MatX symmetric = 0.5 * (here.slope + here.slope.transpose());
     if (Eigen::LLT<MatX>(symmetric).info() != Eigen::Success)
-      return {p,
-              "cavity '" + name +
-                  "': its volume does not grow with the pressure any more (limit point near p = " +
-                  core::shown(p[0] + change[0]) + " Pa)"};
+      return trouble(here,
+                     "its volume does not grow with the pressure any more (limit point near p = " +
+                         core::shown(p[here.at] + change[here.at]) + " Pa)");
     before = here.worst;
     step = here.slope.partialPivLu().solve(-here.volume);
     change += step;
@@ -148,7 +156,12 @@ double Cavities::line_gain(int cavity, const OwnedField& per_p) const
     p[k] = at[0];
   }
   const VecX r = ratio.array() - ratio.mean();
-  return r.dot(p) / r.squaredNorm();
+  const double gain = r.dot(p) / r.squaredNorm();
+  if (!(gain > 0.0 && std::isfinite(gain)))
+    throw core::solver_error("cavity '" + settings_.cavities[index(cavity)].name +
+                             "': no line through its volumes between 0.7 and 1.3 V_0: give "
+                             "-cavity_gain");
+  return gain;
 }
 
 }  // namespace trocar::cavity

@@ -3,7 +3,7 @@
 namespace trocar::driver {
 namespace {
 
-std::vector<OptionSpec> cavity_options()
+std::vector<OptionSpec> wall_and_fluid()
 {
   return {
       word("cavity_surface", "", "physical surface that is the cavity's wall"),
@@ -36,6 +36,12 @@ std::vector<OptionSpec> cavity_options()
        "pressure at the start, in equilibrium; the amount of fluid follows from it"},
       not_negative("cavity_density", "0", "kg/m^3",
                    "density of the fluid: its pressure grows with depth under gravity"),
+  };
+}
+
+std::vector<OptionSpec> model_and_solver()
+{
+  return {
       choice("cavity_model", "follower", {"linear", "frozen", "follower"},
              "pressure on the undeformed wall and linear volume; the same with exact volume, as in "
              "the fluid paper; or both as the wall deforms"),
@@ -80,7 +86,8 @@ void add_edges(std::vector<OptionSpec>& t)
 void add_cavity_options(std::vector<OptionSpec>& t)
 {
   t.push_back(list("cavities", "names of the fluid-filled cavities"));
-  for (const OptionSpec& spec : cavity_options()) with_override(t, spec, "<cavity>");
+  for (const OptionSpec& spec : wall_and_fluid()) with_override(t, spec, "<cavity>");
+  for (const OptionSpec& spec : model_and_solver()) with_override(t, spec, "<cavity>");
   add_edges(t);
   t.push_back(word("pv_cavity", "", "cavity of -analysis pv_curve; by default the first"));
   t.push_back(positive("pv_low", "0.7", "1", "smallest volume of the curve, part of the mesh's"));

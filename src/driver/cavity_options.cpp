@@ -69,6 +69,8 @@ void read_law(Options& options, cavity::CavitySettings& one, const base::Comm& c
   if (options.given("cavity_<cavity>_initial_pressure", one.name) &&
       one.fluid.kind != Kind::pressure)
     one.initial_pressure = initial;
+  if (one.initial_pressure && one.fluid.kind == Kind::gas && initial <= -0.9 * one.fluid.ambient)
+    throw bad("cavity_initial_pressure", one.name, "next to a vacuum: no gas stands that");
   if (one.initial_pressure && one.volume > 0.0)
     throw bad("cavity_volume", one.name, "the amount follows from the initial pressure already");
   const std::string table = options.text("cavity_<cavity>_table", one.name);
@@ -78,6 +80,8 @@ void read_law(Options& options, cavity::CavitySettings& one, const base::Comm& c
     throw bad("cavity_table", one.name, "law " + law + " does not know it");
   const auto curve = read_curve(options.text("cavity_<cavity>_curve", one.name), comm);
   (one.fluid.kind == Kind::pressure ? one.pressure.curve : one.volume_curve) = curve;
+  if (one.initial_pressure && one.volume_curve && core::interpolate(*curve, 1, 0.0) != 1.0)
+    throw bad("cavity_curve", one.name, "beside an initial pressure it must begin with 1");
 }
 
 void read_model(Options& options, cavity::CavitySettings& one, tissue::Model tissue)
@@ -99,6 +103,9 @@ void read_model(Options& options, cavity::CavitySettings& one, tissue::Model tis
   one.gain = options.real("cavity_<cavity>_gain", one.name);
   if (options.given_for("cavity_<cavity>_gain", one.name) && solver != "proportional")
     throw bad("cavity_gain", one.name, "only -cavity_solver proportional has a gain");
+  if (options.given_for("cavity_<cavity>_max_updates", one.name) &&
+      one.model != cavity::Model::frozen)
+    throw bad("cavity_max_updates", one.name, "only model frozen updates pressures");
   one.tolerance = options.real("cavity_<cavity>_tolerance", one.name);
   one.most_updates = options.integer("cavity_<cavity>_max_updates", one.name);
 }
@@ -170,6 +177,9 @@ void check_edge(const cavity::EdgeSettings& edge)
     throw bad("edge_resistance", edge.name, "without resistance and flow the edge does nothing");
   if (edge.hole_resistance > 0.0 && edge.hole_radius > 0.0)
     throw bad("edge_hole_resistance", edge.name, "give a resistance or a radius, not both");
+  if (edge.valve && edge.flow != 0.0)
+    throw bad("edge_flow", edge.name,
+              "a valve has no prescribed flow: give that an edge of its own");
   if (edge.resistance > 0.0 && edge.gap > 0.0)
     throw bad("edge_gap", edge.name, "give a resistance or a gap, not both");
 }
@@ -213,6 +223,9 @@ void read_pv_curve(Options& options, Scenario& scenario)
   pv.points = options.integer("pv_points");
   pv.pieces = options.integer("pv_pieces");
   const auto& cavities = scenario.cavities.cavities;
+  for (const char* option : {"pv_cavity", "pv_low", "pv_high", "pv_points", "pv_pieces"})
+    if (options.given(option) && scenario.time.analysis != Analysis::pv_curve)
+      throw core::option_error("option -" + std::string(option) + ": is for -analysis pv_curve");
   if (scenario.time.analysis != Analysis::pv_curve) return;
   if (cavities.empty())
     throw core::option_error("option -analysis pv_curve: the scene has no cavity (-cavities)");
@@ -247,7 +260,10 @@ void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
     one.caps = options.flag("cavity_<cavity>_cap", name);
     read_law(options, one, comm);
     read_model(options, one, scenario.tissue.model);
-    one.weight = options.real("cavity_<cavity>_density", name) * scenario.tissue.boundary.gravity;
+    const double density = options.real("cavity_<cavity>_density", name);
+    one.weight = density * scenario.tissue.boundary.gravity;
+    if (density > 0.0 && one.weight.isZero(0.0))
+      throw bad("cavity_density", name, "without -gravity the fluid weighs nothing");
     one.alarm = options.real("cavity_<cavity>_alarm", name);
     cavities.push_back(std::move(one));
   }
@@ -258,8 +274,17 @@ void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
   for (const std::string& entry : options.names("edges"))
     scenario.cavities.edges.push_back(read_edge(options, entry, scenario, comm));
   read_pv_curve(options, scenario);
-  for (const auto& one : cavities)
-    if (one.initial_pressure || one.volume > 0.0) scenario.time.start_in_equilibrium = true;
+  for (const auto& one : cavities) {
+    const bool curved = one.volume_curve && core::interpolate(*one.volume_curve, 1, 0.0) != 1.0;
+    if (one.initial_pressure || one.volume > 0.0 || curved)
+      scenario.time.start_in_equilibrium = true;
+    const bool iterative =
+        scenario.laws.method == law::Method::pgs || scenario.laws.method == law::Method::hybrid;
+    if (one.model == cavity::Model::follower && iterative)
+      throw core::option_error(
+          "option -constraint_solver: follower cavities need rows that are met exactly: auto, "
+          "active_set or interior_point");
+  }
 }
 
 }  // namespace trocar::driver

@@ -149,7 +149,8 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
   constraint::Set& set = pass.rows.set;
   law::Problem& problem = pass.problem;
   const law::Multipliers last = std::move(pass.lambda);
-  for (int refreshes = 0;; ++refreshes) {  // once, or until the laws of fluids settle
+  int refreshes = 0;
+  for (;; ++refreshes) {  // once, or until the laws of fluids settle
     problem = constraint::reduce(set, pass.C, free, pass.needles);
     problem.start = refreshes > 0 ? pass.lambda.lambda : last.converged ? last.lambda : start;
     pass.lambda = law::solve(problem, scenario_.laws);
@@ -159,7 +160,8 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
     if (!cavities_ || !cavities_->refresh(pass.lambda.lambda, pass.rows.of_cavities, set)) break;
     if (refreshes == most_refreshes) return "the laws of the fluids do not settle";
   }
-  pass.same_laws = last.converged && law::same_states(problem, last.lambda, pass.lambda.lambda);
+  pass.same_laws = refreshes == 0 && last.converged &&
+                   law::same_states(problem, last.lambda, pass.lambda.lambda);
   if (!last.converged) law::compare(problem, scenario_.compare, report.trials);
 
   pass.mobility = law::mobility(problem);

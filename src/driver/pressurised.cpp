@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "driver/simulation.hpp"
 #include "law/solve.hpp"
 
@@ -29,29 +31,35 @@ fem::OwnedField Simulation::all_forces(const Pass& pass, const State& next,
   return forces;
 }
 
-/// Displacement per unit pressure of every frozen cavity [m/Pa], once for each operator.
-const std::vector<fem::OwnedField>& Simulation::unit_answers(const cavity::State& state,
-                                                             const core::TimeStep& now)
+/// How the tissue alone answers to the pressure of every frozen cavity, once for each operator.
+const cavity::PressureAnswers& Simulation::unit_answers(const cavity::State& state,
+                                                        const core::TimeStep& now)
 {
   constexpr std::size_t most_kept = 2;
   const std::vector<int> which = cavities_->frozen(state);
   const auto known = unit_answers_.find(now.inverse());
   // Pressures that are given at the start only join later.
-  if (known != unit_answers_.end() && known->second.size() == which.size()) return known->second;
+  if (known != unit_answers_.end() && known->second.per_p.size() == which.size())
+    return known->second;
   if (unit_answers_.size() == most_kept) unit_answers_.clear();
-  std::vector<fem::OwnedField>& answers = unit_answers_[now.inverse()];
-  answers.clear();
-  for (int cavity : which) answers.push_back(tissue_.answer(cavities_->unit_load(cavity)));
-  return answers;
+  cavity::PressureAnswers answers{{}, core::VecX::Zero(static_cast<Eigen::Index>(which.size()))};
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    answers.per_p.push_back(tissue_.answer(cavities_->unit_load(which[k])));
+    double& gain = answers.gain[static_cast<Eigen::Index>(k)];
+    gain = cavities_->settings().cavities[static_cast<std::size_t>(which[k])].gain;
+    if (cavities_->proportional() && gain == 0.0)
+      gain = cavities_->line_gain(which[k], answers.per_p.back());
+  }
+  return unit_answers_[now.inverse()] = std::move(answers);
 }
 
-/// Displacement per unit pressure when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
-std::vector<fem::OwnedField> Simulation::answers_with_rows(
-    const Pass& pass, const std::vector<fem::OwnedField>& per_p)
+/// The same when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
+cavity::PressureAnswers Simulation::answers_with_rows(const Pass& pass,
+                                                      const cavity::PressureAnswers& alone)
 {
-  std::vector<fem::OwnedField> answers = per_p;
-  if (pass.rows.set.empty()) return answers;
-  for (fem::OwnedField& w : answers) {
+  cavity::PressureAnswers answers = alone;
+  if (pass.rows.set.empty() || cavities_->proportional()) return answers;
+  for (fem::OwnedField& w : answers.per_p) {
     const core::VecX moved =
         constraint::row_displacements(pass.rows.set, solve::read(pass.probes, w, space_));
     const core::VecX more = law::response(pass.problem, pass.lambda.lambda, moved);
@@ -67,10 +75,10 @@ void Simulation::at_pressures(const fem::OwnedField& free,
                               const fem::OwnedField& start, const core::VecX& last, Pass& pass,
                               State& next, StepReport& report)
 {
-  const std::vector<int> which = cavities_->frozen(next.cavities);
+  const core::VecX p = cavities_->pressures(next.cavities)(cavities_->frozen(next.cavities));
   fem::OwnedField u = free;
-  for (std::size_t k = 0; k < which.size(); ++k)
-    u.value += cavities_->pressures(next.cavities)[which[k]] * per_p[k].value;
+  for (std::size_t k = 0; k < per_p.size(); ++k)
+    u.value += p[static_cast<Eigen::Index>(k)] * per_p[k].value;
   if (!pass.rows.set.empty()) {
     const core::VecX at_probes = solve::read(pass.probes, {u.value - start.value}, space_);
     pass.trouble = solve_constraints(at_probes, last, pass, report);
@@ -88,17 +96,14 @@ void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeM
 {
   const fem::OwnedField start = next.tissue.u;
   const fem::OwnedField free = tissue_.finish(tissue, {}, {});
-  const std::vector<fem::OwnedField>& per_p = unit_answers(next.cavities, now);
+  const cavity::PressureAnswers& alone = unit_answers(next.cavities, now);
   const std::vector<int> which = cavities_->frozen(next.cavities);
   if (!pass.rows.set.empty()) get_compliance(pass, report);
-  for (std::size_t k = 0; cavities_->proportional() && k < which.size(); ++k)
-    if (cavities_->gain(which[k]) == 0.0)
-      cavities_->set_gain(which[k], cavities_->line_gain(which[k], per_p[k]));
   cavities_->take({}, {}, now, next.cavities);
   for (int updates = 0;; ++updates) {
-    at_pressures(free, per_p, start, last, pass, next, report);
+    at_pressures(free, alone.per_p, start, last, pass, next, report);
     if (pass.trouble) return;
-    report.pressure_updates = updates;
+    report.pressure_updates = std::max(report.pressure_updates, updates);
     const cavity::Shape shape = cavities_->shape(next.tissue.u);
     if (cavities_->closed(next.cavities, shape, now)) return;
     if (updates == cavities_->most_updates()) {
@@ -106,10 +111,8 @@ void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeM
                      " updates of the pressure";
       return;
     }
-    std::vector<fem::OwnedField> answers;
-    if (!cavities_->proportional()) answers = answers_with_rows(pass, per_p);
     const cavity::NextPressures pressures =
-        cavities_->next_pressures(next.cavities, shape, answers, now);
+        cavities_->next_pressures(next.cavities, shape, answers_with_rows(pass, alone), now);
     pass.trouble = pressures.trouble;
     if (pass.trouble) return;
     cavities_->set_pressures(which, pressures.p, next.cavities);

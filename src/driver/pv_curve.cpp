@@ -33,6 +33,7 @@ State at_ratio(Simulation& simulation, State from, double before, double ratio, 
     report = result.report;
     return std::move(*result.state);
   }
+  ++simulation.ledger().rejected_steps;
   if (halvings == most_halvings)
     throw core::solver_error("P-V curve, volume ratio " + core::shown(ratio) + ": " + result.why);
   const double middle = 0.5 * (before + ratio);
@@ -93,9 +94,12 @@ void run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const St
   const PvSettings& pv = simulation.scenario().pv;
   std::vector<Point> points;
   int number = 0;
+  const cavity::Cavities& cavities = *simulation.cavities();
+  const double started = cavities.volumes(cavities.shape(start.tissue.u))[pv.cavity] /
+                         cavities.wall(pv.cavity).volume();
   const auto sweep = [&](bool up) {
     State state = start;
-    double before = 1.0;
+    double before = started;
     for (int k = 0; k < pv.points; ++k) {
       const int from_low = up ? k : pv.points - 1 - k;
       const double ratio = pv.low + (pv.high - pv.low) * from_low / (pv.points - 1);

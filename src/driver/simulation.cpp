@@ -160,19 +160,18 @@ std::optional<std::string> Simulation::move_needles(const State& old, State& nex
 
 void Simulation::advance_cavities(const State& old, State& next) const
 {
-  std::vector<cavity::Tip> tips;
+  std::vector<std::vector<cavity::VoidPiece>> voids(needles_.size());
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     const insertion::InsertionState& insertion = next.insertions[i];
-    cavity::Tip tip{next.needles[i].shaft.tip(), true, insertion.tip_arc, 0.0, 0.0};
+    const needle::Shaft& shaft = next.needles[i].shaft;
     for (const insertion::Piece& piece : insertion.path.pieces) {
-      if (piece.begin > insertion.tip_arc) break;
-      tip.in_tissue = piece.tet >= 0;
-      tip.wall_arc = piece.begin;
+      if (piece.tet >= 0 || piece.begin >= insertion.tip_arc) continue;
+      const double middle = 0.5 * (piece.begin + std::min(piece.end, insertion.tip_arc));
+      voids[i].push_back({needle::shaft_at(shaft, shaft.length - (insertion.tip_arc - middle)).x,
+                          insertion::tissue_length(insertion.path, piece.begin)});
     }
-    tip.channel = insertion::tissue_length(insertion.path, tip.wall_arc);
-    tips.push_back(tip);
   }
-  next.cavities = cavities_->advance(old.cavities, old.t, next.t, tips, old.tissue.u);
+  next.cavities = cavities_->advance(old.cavities, old.t, next.t, voids, old.tissue.u);
 }
 
 Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const State& state) const

@@ -156,10 +156,9 @@ class Simulation
   void at_pressures(const fem::OwnedField& free, const std::vector<fem::OwnedField>& per_p,
                     const fem::OwnedField& start, const core::VecX& last, Pass& pass, State& next,
                     StepReport& report);
-  std::vector<fem::OwnedField> answers_with_rows(const Pass& pass,
-                                                 const std::vector<fem::OwnedField>& per_p);
-  const std::vector<fem::OwnedField>& unit_answers(const cavity::State& state,
-                                                   const core::TimeStep& now);
+  cavity::PressureAnswers answers_with_rows(const Pass& pass, const cavity::PressureAnswers& alone);
+  const cavity::PressureAnswers& unit_answers(const cavity::State& state,
+                                              const core::TimeStep& now);
   fem::OwnedField needle_forces(const Pass& pass) const;
   fem::OwnedField all_forces(const Pass& pass, const State& next, const core::TimeStep& now) const;
   void advance_cavities(const State& old, State& next) const;
@@ -192,11 +191,10 @@ class Simulation
   fem::Space space_;
   tissue::Tissue tissue_;
   std::vector<needle::Needle> needles_;
-  std::optional<mesh::Locator> locator_;           ///< only with needles
-  std::optional<insertion::Insertion> insertion_;  ///< only with needles
-  std::optional<cavity::Cavities> cavities_;       ///< only with cavities
-  /// Displacement per unit pressure of frozen cavities, by operator (1/h) [m/Pa].
-  std::map<double, std::vector<fem::OwnedField>> unit_answers_;
+  std::optional<mesh::Locator> locator_;                    ///< only with needles
+  std::optional<insertion::Insertion> insertion_;           ///< only with needles
+  std::optional<cavity::Cavities> cavities_;                ///< only with cavities
+  std::map<double, cavity::PressureAnswers> unit_answers_;  ///< frozen cavities, by 1/h
 };
 
 }  // namespace trocar::driver

@@ -48,8 +48,8 @@ FluidLaw::Answer FluidLaw::at(double p, double amount, double reference) const
 {
   switch (kind) {
     case Kind::bulk: {
-      const double share = 1.0 - (p - reference) / bulk_modulus;
-      return {amount * share, amount / bulk_modulus, share};
+      const double share = std::exp((reference - p) / bulk_modulus);
+      return {amount * share, amount * share / bulk_modulus, share};
     }
     case Kind::gas: {
       const double absolute = std::max(p + ambient, 0.1 * ambient);

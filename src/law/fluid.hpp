@@ -33,7 +33,7 @@ struct FluidLaw
   enum class Kind {
     pressure,         ///< the pressure is given, any volume will do
     constant_volume,  ///< V = V_f
-    bulk,             ///< V = V_f (1 - (p - p_0) / K_f)
+    bulk,             ///< V = V_f exp(-(p - p_0) / K_f)
     gas,              ///< V = V_f (p_0 + p_a) / (p + p_a), isothermal
     table             ///< V = V_f + spline(p) - spline(p_0)
   };

@@ -205,9 +205,4 @@ VecX VolumeCubic::gradient(const VecX& p) const
   return g.tail(size_ - 1);
 }
 
-Eigen::Vector4d VolumeCubic::coefficients() const
-{
-  return {at(0, 0, 0), 3.0 * at(0, 0, 1), 3.0 * at(0, 1, 1), at(1, 1, 1)};
-}
-
 }  // namespace trocar::law

@@ -47,8 +47,6 @@ class VolumeCubic
 
   double value(const VecX& p) const;   ///< [m³]
   VecX gradient(const VecX& p) const;  ///< (m) [m³ per unit of p]
-  /// Coefficients of 1, p, p², p³ for m = 1.
-  Eigen::Vector4d coefficients() const;
 
  private:
   double at(Eigen::Index j, Eigen::Index k, Eigen::Index l) const;

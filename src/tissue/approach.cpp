@@ -28,10 +28,12 @@ void Tissue::factor(const std::vector<Mat3>& R)
 
 /// Begins where the velocity leads.
 void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                            const OwnedField& r, const fem::Load& more, FreeMotion& motion)
+                            const OwnedField& r, const fem::Load& more, double least,
+                            FreeMotion& motion)
 {
   Approach approach;
   approach.stiffness = more.stiffness;
+  approach.least = least;
   OwnedField ahead = space_->zero();
   if (step.t > 0.0 && space_->comm().all(iterate.value == old.u.value)) {
     ahead.value = step.h * old.v.value;
@@ -111,20 +113,21 @@ bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push
   ++a.passes;
   const double left = space_->norm(rest);
   const bool same_laws = space_->comm().all(push.same_laws);  // rows are solved by each rank
-  if (left <= tolerance * load) {
+  if (left <= std::max(tolerance * load, a.least)) {
     current_->last_sweeps = a.passes;
     current_->sweeps += a.passes;
     return true;
   }
   const double most =
       lags() ? most_passes + current_->solver->sweeps_per_factor() : most_passes_of_own;
-  bool leads_on = a.passes < most && std::isfinite(left);
+  const bool leads_on = a.passes < most && std::isfinite(left);
+  bool convex = true;
   if (leads_on && rows && !(same_laws && a.on_rows))
     change_rows(a, d, A_d, more, pushed, push, same_laws);
   else if (leads_on)
-    leads_on = advance(a, std::move(d), std::move(A_d), std::move(more), push);
-  if (!leads_on) {
-    end_approach(motion);
+    convex = advance(a, std::move(d), std::move(A_d), std::move(more), push);
+  if (!leads_on || !convex) {
+    end_approach(motion, convex);
     return false;
   }
   motion.base = a.u;
@@ -134,12 +137,14 @@ bool Tissue::converged(FreeMotion& motion, const OwnedField& u, const Push& push
 }
 
 /// An approach that does not lead on: its factor is too old, or there is nothing to come to.
-void Tissue::end_approach(FreeMotion& motion)
+void Tissue::end_approach(FreeMotion& motion, bool convex)
 {
   if (lags()) return give_up(motion);
   motion.trouble =
-      "no stable equilibrium under pressures that follow the tissue (limit point or buckling): "
-      "volume control passes limit points of the pressure";
+      convex ? "pressures that follow the tissue are not balanced in " +
+                   std::to_string(motion.approach->passes) + " passes"
+             : "the energy under pressures that follow the tissue has negative curvature (limit "
+               "point or buckling): volume control passes limit points of the pressure";
 }
 
 /// A step on which rows begin to hold or slip. The energy is convex and d a proximal step in the
@@ -180,8 +185,8 @@ bool Tissue::advance(Approach& a, OwnedField d, OwnedField A_d, core::VecX more,
     more += beta * a.lambda_direction;
   }
   a.direction_energy = space_->dot(d, A_d) + (rows ? push.yielding(more, more) : 0.0);
-  if (a.stiffness && !(a.direction_energy > 0.0)) return false;
   const double along = space_->dot(a.residual, d);
+  if (a.stiffness && !(a.direction_energy > 0.0)) return false;
   const double step = a.direction_energy > 0.0 ? along / a.direction_energy : 1.0;
   a.u.value += step * d.value;
   a.lambda += step * more;

@@ -31,6 +31,7 @@ struct Approach
   core::VecX lambda_direction;
   double direction_energy = 0.0;  ///< of the last direction [J]; 0: none
   double load = 0.0;              ///< ‖r‖ [N]
+  double least = 0.0;             ///< what need not be balanced any further [N]
   /// ∂f/∂u of loads that follow, part of -A; empty: none.
   std::function<fem::OwnedField(const fem::OwnedField&)> stiffness;
   bool on_rows = false;  ///< u meets the laws of all rows with `lambda`

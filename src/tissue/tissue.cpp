@@ -170,7 +170,12 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
   use_operator(R_, step);
   const std::vector<Mat3>& R = R_;
-  OwnedField r = forces(old, iterate, R, step, nullptr);
+  // Under loads that follow r is the rest of large forces: below their round-off there is nothing
+  // to be balanced.
+  constexpr double rest_of_forces = 1e-10;
+  double scale = 0.0;
+  OwnedField r = forces(old, iterate, R, step, more.stiffness ? &scale : nullptr);
+  if (more.stiffness) scale = rest_of_forces * std::max(scale, smallest_scale_);
   if (more.force.value.size() > 0) r.value += more.force.value;
 
   OwnedField prescribed = space_->zero();
@@ -187,7 +192,7 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
   if (current_->older || more.stiffness)
-    begin_approach(old, iterate, step, r, more, motion);
+    begin_approach(old, iterate, step, r, more, scale, motion);
   else
     motion.half = begin(r);
   return motion;

@@ -184,13 +184,13 @@ class Tissue
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
                                  const std::vector<Mat3>& R_factor) const;
   void begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                      const OwnedField& r, const fem::Load& more, FreeMotion& motion);
+                      const OwnedField& r, const fem::Load& more, double least, FreeMotion& motion);
   void change_rows(Approach& approach, const OwnedField& d, const OwnedField& A_d,
                    const core::VecX& more, const OwnedField& pushed, const Push& push,
                    bool same_laws) const;
   bool advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
                const Push& push) const;
-  void end_approach(FreeMotion& motion);
+  void end_approach(FreeMotion& motion, bool convex);
   OwnedField operate(const Approach& approach, const OwnedField& d) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
                     const TimeStep& step, double* scale,

@@ -213,6 +213,33 @@ TEST(Corotational, OldFactorsGiveTheSame)
   }
 }
 
+// A given pressure opens the cavity as far as volume control says, in every tissue, at the start of
+// a static or a dynamic run; a fluid enclosed at that pressure then stays as it is.
+TEST(GivenPressure, IsTheInverseOfVolumeControl)
+{
+  for (tissue::Model tissue : {tissue::Model::linear, tissue::Model::corotational})
+    for (double part : {0.9, 1.001, 1.1}) {
+      driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+      scenario.tissue.model = tissue;
+      scenario.tissue.lag_tolerance = 1e-8;
+      driver::Scenario volume = scenario, pressure = scenario, enclosed = scenario;
+      volume.cavities.cavities[0].volume = part * 2.7e-5;
+      const cavity::CavityReport held = solved(volume).cavities[0];
+      pressure.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::pressure;
+      pressure.cavities.cavities[0].pressure.mean = held.pressure;
+      EXPECT_NEAR(solved(pressure).cavities[0].volume, part * 2.7e-5, 1e-7 * 2.7e-5);
+      enclosed.cavities.cavities[0].initial_pressure = held.pressure;
+      enclosed.time.analysis = driver::Analysis::dynamic;
+      enclosed.time.start_in_equilibrium = true;
+      enclosed.time.step = 0.02;
+      enclosed.time.end = 0.1;
+      const test::Run run = test::run(enclosed);
+      EXPECT_NEAR(run.reports.front().cavities[0].volume, part * 2.7e-5, 1e-7 * 2.7e-5);
+      EXPECT_NEAR(run.reports.back().cavities[0].pressure, held.pressure,
+                  1e-5 * std::abs(held.pressure));
+    }
+}
+
 /// dV/dp of a cavity at rest [m³/Pa].
 double compliance(driver::Scenario scenario)
 {
@@ -452,6 +479,69 @@ TEST(Puncture, OpensTheEdge)
   }
   EXPECT_TRUE(was_in && was_out && alarmed);
   EXPECT_LT(run.reports.back().cavities[0].pressure, 600.0);
+}
+
+// A needle that is through both walls at the start has opened its edge.
+TEST(Puncture, NeedleThroughTheCavityAtTheStart)
+{
+  driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+  add_needle(scenario, 0.0253);
+  scenario.needles[0].motion.inserted = 0.045;
+  scenario.needles[0].motion.velocity = 0.0;
+  scenario.needles[0].motion.length = 0.1;
+  scenario.time.end = 0.04;
+  scenario.time.start_in_equilibrium = true;
+  scenario.cavities.cavities[0].initial_pressure = 500.0;
+  cavity::EdgeSettings leak;
+  leak.name = "leak";
+  leak.from = 0;
+  leak.needle = 0;
+  leak.resistance = 1e9;
+  scenario.cavities.edges = {leak};
+  const test::Run run = test::run(scenario);
+  EXPECT_TRUE(run.states.back().cavities.edge[0].needle_in);
+  EXPECT_NEAR(run.states.back().cavities.edge[0].channel, 0.01, 1e-3);
+  EXPECT_GT(run.states.back().cavities.edge[0].flow, 0.0);
+}
+
+// Two cavities in a row: an edge between them opens when the needle has come into the second one.
+TEST(Puncture, ASeptumHoldsUntilItIsPierced)
+{
+  driver::Scenario scenario = test::cavity_scenario(5, 1, Model::linear);
+  test::BlockShape shape{7, 5, 5, Vec3(0.07, 0.05, 0.05)};
+  const auto in = [](const Vec3& x, double at) {
+    return (x - Vec3(at, 0.025, 0.025)).cwiseAbs().maxCoeff() < 0.0051;
+  };
+  shape.hole = [&](const Vec3& x) { return in(x, 0.015) || in(x, 0.045); };
+  scenario.mesh = test::block(shape);
+  test::add_surface(scenario.mesh, "wall", [&](const Vec3& x) { return in(x, 0.015); });
+  test::add_surface(scenario.mesh, "other", [&](const Vec3& x) { return in(x, 0.045); });
+  cavity::CavitySettings other = scenario.cavities.cavities[0];
+  other.name = other.surface = "other";
+  scenario.cavities.cavities.push_back(other);
+  add_needle(scenario, 0.0253);
+  scenario.needles[0].motion.entry.z() = 0.0243;
+  scenario.needles[0].motion.velocity = 0.05;
+  scenario.needles[0].motion.depth = 0.045;
+  scenario.needles[0].motion.length = 0.12;
+  cavity::EdgeSettings bridge;
+  bridge.name = "bridge";
+  bridge.from = 0;
+  bridge.to = 1;
+  bridge.needle = 0;
+  bridge.resistance = 1e9;
+  scenario.cavities.edges = {bridge};
+  const test::Run run = test::run(scenario);
+  bool opened = false;
+  for (std::size_t n = 1; n < run.states.size(); ++n) {
+    const double depth = run.states[n].needles[0].shaft.tip().x();
+    const bool pierced = run.states[n].cavities.edge[0].pierced;
+    if (depth < 0.039) {
+      EXPECT_FALSE(pierced) << depth;
+    }
+    opened = opened || pierced;
+  }
+  EXPECT_TRUE(opened);
 }
 
 /// A plate on the top, moved by two curves: down along z, sideways along x.

@@ -203,7 +203,7 @@ TEST(FollowerSphere, LimitPoint)
   driver::Simulation simulation(above, base::Comm(MPI_COMM_WORLD));
   const driver::StepResult lost = simulation.initial_state();
   ASSERT_FALSE(lost.state);
-  EXPECT_NE(lost.why.find("limit point"), std::string::npos) << lost.why;
+  EXPECT_NE(lost.why.find("negative curvature"), std::string::npos) << lost.why;
 }
 
 // A frozen tube: V/V_0 = (1 + p/2G)² in an infinite body, so that it cannot be drained of more than
