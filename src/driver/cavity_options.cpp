@@ -78,8 +78,13 @@ void read_law(Options& options, cavity::CavitySettings& one, const base::Comm& c
     one.fluid.table = read_table(table, one.name, comm);
   else if (options.given_for("cavity_<cavity>_table", one.name))
     throw bad("cavity_table", one.name, "law " + law + " does not know it");
+}
+
+/// What a curve scales: a given pressure, or the amount of fluid.
+void read_scale(Options& options, cavity::CavitySettings& one, const base::Comm& comm)
+{
   const auto curve = read_curve(options.text("cavity_<cavity>_curve", one.name), comm);
-  (one.fluid.kind == Kind::pressure ? one.pressure.curve : one.volume_curve) = curve;
+  (one.fluid.kind == law::FluidLaw::Kind::pressure ? one.pressure.curve : one.volume_curve) = curve;
   if (one.initial_pressure && one.volume_curve && core::interpolate(*curve, 1, 0.0) != 1.0)
     throw bad("cavity_curve", one.name, "beside an initial pressure it must begin with 1");
 }
@@ -259,6 +264,7 @@ void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
     mesh::surface_group(scenario.mesh, one.surface);
     one.caps = options.flag("cavity_<cavity>_cap", name);
     read_law(options, one, comm);
+    read_scale(options, one, comm);
     read_model(options, one, scenario.tissue.model);
     const double density = options.real("cavity_<cavity>_density", name);
     one.weight = density * scenario.tissue.boundary.gravity;
