@@ -190,7 +190,9 @@ void add_output(std::vector<OptionSpec>& t)
       count("output_every", "1", 1, "field files every so many steps"),
       [] {
         OptionSpec spec =
-            list("output_fields", "nodal fields: displacement, velocity; \"\" = none");
+            list("output_fields",
+                 "nodal: displacement, velocity, nodal_stress; by tet: stress, von_mises, "
+                 "principal_stress, strain_energy; \"\" = none");
         spec.fallback = "displacement";
         return spec;
       }(),

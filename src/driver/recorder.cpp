@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "driver/provenance.hpp"
+#include "driver/stress_fields.hpp"
 
 #include "core/words.hpp"
 
@@ -246,11 +247,12 @@ void Recorder::record(const Simulation& simulation, const State& state, const St
   const double build_seconds = space.comm().max(report.compliance.seconds);
   std::vector<io::Field> fields;
   // Without output fields nothing is gathered and no field file is made.
-  if (with_fields && (output.displacement || output.velocity)) {
+  if (with_fields && (output.displacement || output.velocity || output.stress.any())) {
     const fem::GlobalField u = space.gather(state.tissue.u);
     if (output.displacement) fields.push_back(nodal_field("/displacement", "m", u));
     if (output.velocity)
       fields.push_back(nodal_field("/velocity", "m/s", space.gather(state.tissue.v)));
+    for (auto& field : stress_fields(simulation, state)) fields.push_back(std::move(field));
     for (auto& field : coupling_fields(simulation, state, u)) fields.push_back(std::move(field));
     for (auto& field : shaft_fields(simulation, state)) fields.push_back(std::move(field));
   }

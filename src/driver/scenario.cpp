@@ -160,12 +160,20 @@ OutputSettings read_output(Options& options)
   output.quiet = options.flag("quiet");
   output.energy = options.flag("output_energy");
   output.displacement = false;
-  const std::vector<std::string> known{"displacement", "velocity"};
+  const std::map<std::string, bool*> fields{{"displacement", &output.displacement},
+                                            {"velocity", &output.velocity},
+                                            {"stress", &output.stress.stress},
+                                            {"von_mises", &output.stress.von_mises},
+                                            {"principal_stress", &output.stress.principal_stress},
+                                            {"strain_energy", &output.stress.strain_energy},
+                                            {"nodal_stress", &output.stress.nodal_stress}};
+  std::vector<std::string> known;
+  for (const auto& [name, wanted] : fields) known.push_back(name);
   for (const std::string& field : options.names("output_fields")) {
     if (std::find(known.begin(), known.end(), field) == known.end())
       throw core::option_error("option -output_fields: no field '" + field + "'" +
                                core::did_you_mean(field, known));
-    (field == "displacement" ? output.displacement : output.velocity) = true;
+    *fields.at(field) = true;
   }
   return output;
 }

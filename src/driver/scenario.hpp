@@ -36,12 +36,25 @@ struct PvSettings
   int pieces = 4;  ///< of the second fit
 };
 
+/// Fields of stress, made only when asked for.
+struct StressOutput
+{
+  bool stress = false, von_mises = false, principal_stress = false, strain_energy = false;
+  bool nodal_stress = false;  ///< means of the tets around every node
+
+  bool any() const
+  {
+    return stress || von_mises || principal_stress || strain_energy || nodal_stress;
+  }
+};
+
 struct OutputSettings
 {
   std::string folder;
   int every = 1;
   bool displacement = true;
   bool velocity = false;
+  StressOutput stress;
   bool energy = false;       ///< keep the energy account
   bool stale_error = false;  ///< solve stale steps exactly as well
   bool quiet = false;

@@ -124,8 +124,9 @@ void Results::write_fields(int step, double time, const std::vector<Field>& fiel
 
   Frame frame{step, time, {}};
   for (const Field& field : fields)
-    if (field.nodal)
-      frame.nodal.push_back({field.name, field.columns, field.units, {}, true, false});
+    if (field.nodal || field.cell)
+      frame.shown.push_back(
+          {field.name, field.columns, field.units, {}, field.nodal, false, field.cell});
   frames_.push_back(std::move(frame));
   write_xdmf();
 }
@@ -150,10 +151,12 @@ void Results::write_xdmf() const
     x << "</Geometry>\n    <Attribute Name=\"region\" Center=\"Cell\">";
     item(tets, "Int", "run.h5:/mesh/region");
     x << "</Attribute>\n";
-    for (const Field& field : frame.nodal) {
-      x << "    <Attribute Name=\"" << field.name.substr(1) << "\" AttributeType=\""
-        << (field.columns == 3 ? "Vector" : "Scalar") << "\" Center=\"Node\">";
-      item(field.columns ? nodes + " " + std::to_string(field.columns) : nodes, "Float",
+    for (const Field& field : frame.shown) {
+      const std::string& rows = field.cell ? tets : nodes;
+      const char* type = field.columns == 0 ? "Scalar" : field.columns == 3 ? "Vector" : "Matrix";
+      x << "    <Attribute Name=\"" << field.name.substr(1) << "\" AttributeType=\"" << type
+        << "\" Center=\"" << (field.cell ? "Cell" : "Node") << "\">";
+      item(field.columns ? rows + " " + std::to_string(field.columns) : rows, "Float",
            step_file(frame.step) + ":" + field.name);
       x << "</Attribute>\n";
     }

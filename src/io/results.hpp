@@ -28,6 +28,7 @@ struct Field
   std::vector<double> values;  ///< row-major
   bool nodal = false;
   bool integer = false;  ///< write as 64-bit integers
+  bool cell = false;     ///< by tet; shown like nodal fields
 };
 
 /// What a run was: text and word lists below /provenance.
@@ -65,7 +66,7 @@ class Results
   {
     int step;
     double time;
-    std::vector<Field> nodal;  ///< names and shapes only
+    std::vector<Field> shown;  ///< names and shapes only
   };
   std::string folder_;
   base::H5File run_;

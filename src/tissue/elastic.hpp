@@ -52,6 +52,12 @@ inline Mat3 stress(const Material& m, const Mat3& R, const Mat3& F, const Mat3& 
   return R * (2.0 * m.mu() * e + m.lambda() * e.trace() * Mat3::Identity());
 }
 
+/// Cauchy stress P Fᵀ / det F [Pa]; symmetric when P is that of the polar rotation of F.
+inline Mat3 cauchy_stress(const Mat3& P, const Mat3& F)
+{
+  return P * F.transpose() / F.determinant();
+}
+
 /// g ⊗ 1 and 1 ⊗ g on the entries of a column-major 3x3 block: g by row, and g by column.
 struct Spread
 {

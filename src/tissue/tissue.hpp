@@ -63,6 +63,13 @@ struct Work
   double damped = 0.0;    ///< by Rayleigh damping
 };
 
+/// Elastic stress and energy density of every tet, in file order, equal on every rank.
+struct StressField
+{
+  core::VecX stress;  ///< Cauchy: xx, yy, zz, xy, yz, xz of each (6 · tets) [Pa]
+  core::VecX energy;  ///< per undeformed volume (tets) [J/m³]
+};
+
 /// The deformable bodies: one or more volumes of the mesh in one operator
 ///   A = M/h² + B/h + K,  B = αM + βK   (static: A = K)    [N/m].
 class Tissue
@@ -132,6 +139,9 @@ class Tissue
   /// (x, y, z each), `more` being those of rows and cavities. Costs the elements there. Collective.
   std::vector<Vec3> tool_forces(const TissueState& old, const OwnedField& u, const TimeStep& step,
                                 const OwnedField& more) const;
+
+  /// Only on request: an element loop, and all tets on every rank. Collective.
+  StressField stresses(const OwnedField& u) const;
 
   /// Energy account of an accepted step; `push` is Hᵀλ. Only on request: an element loop more.
   /// Collective.

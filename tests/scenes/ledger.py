@@ -103,6 +103,7 @@ work = ledger(folder)
 linearisations = histories(folder)["time_linearisations"].sum()
 check(work["factorisations"] == 1, "follower: the factor is kept")
 check(work["columns_built"] == linearisations, "follower: one column per linearisation, the wall's new slope")
+check(work["stress_evaluations"] == 0, "stress that is not asked for is not computed")
 given = {**phantom, "-cavity_model": "linear", "-cavity_pocket_law": "pressure",
          "-cavity_pocket_pressure": "100"}
 work = ledger(completed(given))

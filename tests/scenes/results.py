@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy as np
 
-from harness import check, completed, finish, options, small_block
+from harness import check, completed, finish, geometry, options, small_block
 
 settings = options("small_insertion.opts")
 settings.update({"-mesh": small_block(), "-time_end": "1", "-output_every": "10",
@@ -85,4 +85,27 @@ for item in items:
         if target[dataset].shape != shape:
             check(False, f"run.xdmf: {item.text} has shape {target[dataset].shape}, not {shape}")
 check(len(items) == 5 * len(steps), "run.xdmf: mesh, region, displacement, velocity per step")
+
+# Stress on request: shapes, places in ParaView's file, energy against the work of the plate.
+phantom = options("phantom.opts")
+phantom["-mesh"] = geometry("phantom")
+every = ["stress", "von_mises", "principal_stress", "strain_energy", "nodal_stress"]
+folder = completed({**phantom, "-output_fields": ",".join(every)}, 2)
+with h5py.File(os.path.join(folder, "run.h5")) as r, \
+        h5py.File(os.path.join(folder, "fields", "step_000003.h5")) as step:
+    x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:]
+    a, b, c, d = (x[tets[:, k]] for k in range(4))
+    volume = abs(np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a))) / 6
+    shapes = [(len(tets), 6), (len(tets),), (len(tets), 3), (len(tets),), (len(x), 6)]
+    check([step[name].shape for name in every] == shapes, "stress fields have their shapes")
+    check("displacement" not in step, "and only what is asked for is written")
+    force = r["history/boundary/stage/force"][:, 0]
+    work = -0.003 * (0.5 * (force[1:] + force[:-1])).sum()
+    energy = (volume * step["strain_energy"][:]).sum()
+    check(abs(energy - work) < 1e-3 * work, f"strain energy is the plate's work ({energy:.5f} J)")
+    check(int(r["ledger"].attrs["stress_evaluations"]) == 4, "one evaluation per field file")
+with open(os.path.join(folder, "run.xdmf")) as stream:
+    text = stream.read()
+check(text.count('Center="Cell"') == 4 * (1 + 4) and 'Name="nodal_stress" AttributeType="Matrix" Center="Node"' in text,
+      "ParaView's file names them by tet and by node")
 finish()

@@ -1,0 +1,74 @@
+#include "driver/stress_fields.hpp"
+
+#include <cmath>
+
+namespace trocar::driver {
+namespace {
+
+using core::VecX;
+using Six = Eigen::Matrix<double, 6, 1>;
+
+io::Field field(const std::string& name, std::size_t columns, const std::string& units,
+                const VecX& values, bool nodal)
+{
+  return {name,  columns, units, {values.data(), values.data() + values.size()},
+          nodal, false,   !nodal};
+}
+
+}  // namespace
+
+double von_mises(const Six& s)
+{
+  const double xy = s[0] - s[1], yz = s[1] - s[2], zx = s[2] - s[0];
+  return std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3.0 * s.tail<3>().squaredNorm());
+}
+
+Vec3 principal_values(const Six& s)
+{
+  core::Mat3 tensor;
+  tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+  const Eigen::SelfAdjointEigenSolver<core::Mat3> eigen(tensor, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues().reverse();
+}
+
+VecX nodal_means(const mesh::Mesh& mesh, const VecX& cells, Eigen::Index columns)
+{
+  VecX sum = VecX::Zero(columns * mesh.node_count()), weight = VecX::Zero(mesh.node_count());
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const double volume = mesh::tet_volume(mesh, t);
+    for (int node : mesh.tets[static_cast<std::size_t>(t)]) {
+      sum.segment(columns * node, columns) += volume * cells.segment(columns * t, columns);
+      weight[node] += volume;
+    }
+  }
+  for (Eigen::Index i = 0; i < weight.size(); ++i) sum.segment(columns * i, columns) /= weight[i];
+  return sum;
+}
+
+std::vector<io::Field> stress_fields(const Simulation& simulation, const State& state)
+{
+  const StressOutput& wanted = simulation.scenario().output.stress;
+  std::vector<io::Field> fields;
+  if (!wanted.any()) return fields;
+  const tissue::StressField found = simulation.tissue().stresses(state.tissue.u);
+  if (!simulation.space().comm().root()) return fields;  // only rank 0 writes
+  const Eigen::Index tets = found.energy.size();
+  VecX mises(tets), principal(3 * tets);
+  for (Eigen::Index t = 0; t < tets; ++t) {
+    const Six s = found.stress.segment<6>(6 * t);
+    mises[t] = von_mises(s);
+    if (wanted.principal_stress) principal.segment<3>(3 * t) = principal_values(s);
+  }
+  if (wanted.stress) fields.push_back(field("/stress", 6, "Pa", found.stress, false));
+  if (wanted.von_mises) fields.push_back(field("/von_mises", 0, "Pa", mises, false));
+  if (wanted.principal_stress)
+    fields.push_back(field("/principal_stress", 3, "Pa", principal, false));
+  if (wanted.strain_energy)
+    fields.push_back(field("/strain_energy", 0, "J/m^3", found.energy, false));
+  if (wanted.nodal_stress)
+    fields.push_back(field("/nodal_stress", 6, "Pa",
+                           nodal_means(simulation.scenario().mesh, found.stress, 6), true));
+  return fields;
+}
+
+}  // namespace trocar::driver

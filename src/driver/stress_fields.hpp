@@ -1,0 +1,22 @@
+#pragma once
+
+#include "driver/simulation.hpp"
+#include "io/results.hpp"
+
+namespace trocar::driver {
+
+/// The fields of stress that are asked for: /stress (tets, 6; Cauchy: xx, yy, zz, xy, yz, xz),
+/// /von_mises, /principal_stress (tets, 3; falling), /strain_energy (tets), /nodal_stress
+/// (nodes, 6; means of the tets around a node by volume). Collective.
+std::vector<io::Field> stress_fields(const Simulation& simulation, const State& state);
+
+/// Means by volume of the tets' values (columns · tets) around every node (columns · nodes).
+core::VecX nodal_means(const mesh::Mesh& mesh, const core::VecX& cells, Eigen::Index columns);
+
+/// sqrt(3 J₂) of a stress xx, yy, zz, xy, yz, xz [Pa].
+double von_mises(const Eigen::Matrix<double, 6, 1>& stress);
+
+/// Its principal values, falling [Pa].
+Vec3 principal_values(const Eigen::Matrix<double, 6, 1>& stress);
+
+}  // namespace trocar::driver

@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "driver/stress_fields.hpp"
+#include "support/body.hpp"
+#include "support/cavity.hpp"
+#include "support/shell.hpp"
+
+namespace trocar {
+namespace {
+
+using core::Mat3;
+using core::Vec3;
+using Six = Eigen::Matrix<double, 6, 1>;
+
+fem::OwnedField nodal(const test::Body& body, const std::function<Vec3(const Vec3&)>& f)
+{
+  fem::OwnedField field = body.space.zero();
+  for (int i = 0; i < body.space.owned(); ++i)
+    field.node(i) = f(body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))]);
+  return field;
+}
+
+// A stretch along x: Hooke's stress of linear tissue; of corotational tissue the Cauchy stress of
+// the stretch, turned with the body by any rotation.
+TEST(Stress, OfAStretchAndARotation)
+{
+  const double E = 4000.0, nu = 0.3, stretch = 0.1;
+  const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = E / (2 * (1 + nu));
+  const Mat3 U = Vec3(1.0 + stretch, 1.0, 1.0).asDiagonal();
+  const Mat3 turn = Eigen::AngleAxisd(1.2, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  for (tissue::Model model : {tissue::Model::linear, tissue::Model::corotational}) {
+    tissue::TissueSettings settings;
+    settings.model = model;
+    settings.materials = {{E, nu, 1000.0, 0.0, 0.3}};
+    test::Body body({3, 2, 2, Vec3(1.0, 0.7, 0.8), 0.2}, settings);
+    const bool turned = model == tissue::Model::corotational;
+    const Mat3 R = turned ? turn : Mat3(Mat3::Identity());
+    const auto u = nodal(body, [&](const Vec3& X) { return Vec3(R * U * X - X); });
+    const tissue::StressField field = body.tissue.stresses(u);
+    Mat3 s = Mat3::Zero();
+    s.diagonal() << (lambda + 2 * mu) * stretch, lambda * stretch, lambda * stretch;
+    // T U / det U, with T the stress above; U differs from 1 along x alone.
+    if (turned) s.diagonal() = Vec3(s(0, 0), s(1, 1) / 1.1, s(2, 2) / 1.1);
+    s = R * s * R.transpose();
+    Six expected;
+    expected << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
+    for (int t = 0; t < body.mesh.tet_count(); ++t) {
+      EXPECT_LT((field.stress.segment<6>(6 * t) - expected).norm(), 1e-11 * expected.norm());
+      EXPECT_NEAR(field.energy[t], 0.5 * (lambda + 2 * mu) * stretch * stretch, 1e-10 * E);
+    }
+    const core::VecX means = driver::nodal_means(body.mesh, field.stress, 6);
+    EXPECT_LT((means.head<6>() - expected).norm(), 1e-11 * expected.norm());
+    EXPECT_EQ(body.ledger.stress_evaluations, 1);
+  }
+}
+
+TEST(Stress, MisesAndPrincipalValues)
+{
+  Six s;
+  s << 0, 0, 0, 50.0, 0, 0;  // pure shear
+  EXPECT_NEAR(driver::von_mises(s), 50.0 * std::sqrt(3.0), 1e-12);
+  EXPECT_LT((driver::principal_values(s) - Vec3(50, 0, -50)).norm(), 1e-12);
+  s << 7, 7, 7, 0, 0, 0;
+  EXPECT_NEAR(driver::von_mises(s), 0.0, 1e-12);
+  s << 3, -1, 2, 0.5, -0.7, 1.1;  // invariants
+  const Vec3 p = driver::principal_values(s);
+  EXPECT_NEAR(p.sum(), 4.0, 1e-12);
+  EXPECT_NEAR(driver::von_mises(s),
+              std::sqrt(0.5 * (std::pow(p[0] - p[1], 2) + std::pow(p[1] - p[2], 2) +
+                               std::pow(p[2] - p[0], 2))),
+              1e-12);
+}
+
+// Lamé's shell under inner pressure: the stress of the tets converges with order 1, the means at
+// inner nodes with a higher one.
+TEST(Stress, LameShellConverges)
+{
+  const double a = 0.011, b = 0.025, p = 100.0, E = 15000.0, nu = 0.3;
+  const double k = p * a * a * a / (b * b * b - a * a * a);
+  const auto exact = [&](const Vec3& x) {
+    const double r = x.norm(), c = std::pow(b / r, 3);
+    const Vec3 n = x / r;
+    const Mat3 s = k * (1.0 - c) * n * n.transpose() +
+                   k * (1.0 + 0.5 * c) * (Mat3::Identity() - n * n.transpose());
+    Six six;
+    six << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
+    return six;
+  };
+  std::vector<double> of_tets, of_nodes;
+  for (int levels : {1, 2, 3}) {
+    driver::Scenario scenario;
+    const int layers = 3 << (levels - 1);
+    scenario.mesh = test::shell(levels, layers, a, b);
+    scenario.time.analysis = driver::Analysis::equilibrium;
+    scenario.tissue.model = tissue::Model::linear;
+    scenario.tissue.materials = {{E, nu, 1000.0, 0.0, 0.0}};
+    scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
+    cavity::CavitySettings fluid;
+    fluid.name = "fluid";
+    fluid.surface = "wall";
+    fluid.model = cavity::Model::linear;
+    fluid.fluid.kind = law::FluidLaw::Kind::pressure;
+    fluid.pressure.mean = p;
+    scenario.cavities.cavities = {fluid};
+    driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+    const driver::StepResult result = simulation.initial_state();
+    ASSERT_TRUE(result.state) << result.why;
+    const tissue::StressField field = simulation.tissue().stresses(result.state->tissue.u);
+    double off = 0.0, all = 0.0;
+    for (int t = 0; t < scenario.mesh.tet_count(); ++t) {
+      Vec3 middle = Vec3::Zero();
+      for (const Vec3& x : mesh::corners(scenario.mesh, t)) middle += 0.25 * x;
+      const double volume = mesh::tet_volume(scenario.mesh, t);
+      off += volume * (field.stress.segment<6>(6 * t) - exact(middle)).squaredNorm();
+      all += volume * exact(middle).squaredNorm();
+    }
+    of_tets.push_back(std::sqrt(off / all));
+    const core::VecX means = driver::nodal_means(scenario.mesh, field.stress, 6);
+    off = all = 0.0;
+    for (int i = 0; i < scenario.mesh.node_count(); ++i) {
+      const Vec3& x = scenario.mesh.x[static_cast<std::size_t>(i)];
+      if (x.norm() < 1.2 * a || x.norm() > b / 1.1) continue;
+      off += (means.segment<6>(6 * i) - exact(x)).squaredNorm();
+      all += exact(x).squaredNorm();
+    }
+    of_nodes.push_back(std::sqrt(off / all));
+  }
+  std::printf("[ stress ] tets %.3g %.3g %.3g, nodes %.3g %.3g %.3g\n", of_tets[0], of_tets[1],
+              of_tets[2], of_nodes[0], of_nodes[1], of_nodes[2]);
+  EXPECT_GT(std::log2(of_tets[1] / of_tets[2]), 0.85);
+  EXPECT_GT(std::log2(of_nodes[1] / of_nodes[2]), 1.3);
+}
+
+}  // namespace
+}  // namespace trocar
