@@ -197,6 +197,10 @@ void add_output(std::vector<OptionSpec>& t)
         return spec;
       }(),
       flag("output_energy", "energy account in log and histories: one more element loop per step"),
+      flag("error_estimate",
+           "estimate the discretisation error at the end of the run from the stress, by volume"),
+      not_negative("error_target", "0", "1",
+                   "energy error to be told how far off the run is; 0 = none"),
       flag("check", "stop after set-up: options, mesh, operator"),
       flag("quiet", "no progress lines"),
   };

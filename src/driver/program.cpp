@@ -9,6 +9,7 @@
 #include "base/petsc.hpp"
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
+#include "driver/error_estimate.hpp"
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
 #include "driver/provenance.hpp"
@@ -30,7 +31,7 @@ class Clock
   {
   }
 
-  void run(State state)
+  State run(State state)
   {
     const TimeSettings& time = simulation_.scenario().time;
     const auto steps = static_cast<long>(std::ceil(time.end / time.step - 1e-6));
@@ -44,6 +45,7 @@ class Clock
           n == steps || n % static_cast<long>(simulation_.scenario().output.every) == 0;
       state = advance(std::move(state), {t, h, time.analysis == Analysis::equilibrium}, 0, output);
     }
+    return state;
   }
 
  private:
@@ -106,7 +108,8 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   if (scenario.time.analysis == Analysis::pv_curve)
     run_pv_curve(simulation, recorder, log, *start.state);
   else
-    Clock(simulation, recorder, log).run(std::move(*start.state));
+    start.state = Clock(simulation, recorder, log).run(std::move(*start.state));
+  if (scenario.output.error_estimate) report_error(simulation, recorder, log, *start.state);
   recorder.close(simulation);
   log.finish();
 }

@@ -159,6 +159,8 @@ OutputSettings read_output(Options& options)
   output.every = options.integer("output_every");
   output.quiet = options.flag("quiet");
   output.energy = options.flag("output_energy");
+  output.error_target = options.real("error_target");
+  output.error_estimate = options.flag("error_estimate") || output.error_target > 0.0;
   output.displacement = false;
   const std::map<std::string, bool*> fields{{"displacement", &output.displacement},
                                             {"velocity", &output.velocity},

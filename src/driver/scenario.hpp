@@ -55,8 +55,10 @@ struct OutputSettings
   bool displacement = true;
   bool velocity = false;
   StressOutput stress;
-  bool energy = false;       ///< keep the energy account
-  bool stale_error = false;  ///< solve stale steps exactly as well
+  bool energy = false;  ///< keep the energy account
+  bool error_estimate = false;
+  double error_target = 0.0;  ///< of the energy norm, 0: none
+  bool stale_error = false;   ///< solve stale steps exactly as well
   bool quiet = false;
 };
 

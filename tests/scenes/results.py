@@ -5,7 +5,8 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy as np
 
-from harness import check, completed, finish, geometry, options, small_block
+from harness import check, completed, finish, geometry, options, small_block, structured
+from harness import run as launch
 
 settings = options("small_insertion.opts")
 settings.update({"-mesh": small_block(), "-time_end": "1", "-output_every": "10",
@@ -108,4 +109,18 @@ with open(os.path.join(folder, "run.xdmf")) as stream:
     text = stream.read()
 check(text.count('Center="Cell"') == 4 * (1 + 4) and 'Name="nodal_stress" AttributeType="Matrix" Center="Node"' in text,
       "ParaView's file names them by tet and by node")
+
+# The error estimate: falls with the edges, parts add to one, nothing without it.
+estimates = []
+for n in ("5", "9"):
+    cube = options("compression_test.opts")
+    cube.update({"-mesh": structured("cube_" + n, *f"--nodes {n} {n} {n} --size 0.04 0.04 0.04 --split 5".split()),
+                 "-fix": "z0", "-boundary_z1_displacement": "0,0,-0.002", "-tissue_poisson": "0.3",
+                 "-error_target": "0.01"})
+    with h5py.File(os.path.join(completed(cube, 2), "run.h5")) as r:
+        estimates.append(float(r["error_estimate/relative"][0]))
+        check(abs(r["error_estimate/part"][:].sum() - 1.0) < 1e-12, "parts of the error add to one")
+check(1.2 < estimates[0] / estimates[1] < 2.2, f"the estimate falls with the edges {estimates}")
+said = launch({**cube, "-output_dir": os.path.join(folder, "said")}).stdout
+check("times shorter" in said and "estimated error" in said, "the log says how far off the run is")
 finish()

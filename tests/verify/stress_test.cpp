@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "driver/error_estimate.hpp"
 #include "driver/stress_fields.hpp"
 #include "support/body.hpp"
 #include "support/cavity.hpp"
@@ -54,6 +55,8 @@ TEST(Stress, OfAStretchAndARotation)
     const core::VecX means = driver::nodal_means(body.mesh, field.stress, 6);
     EXPECT_LT((means.head<6>() - expected).norm(), 1e-11 * expected.norm());
     EXPECT_EQ(body.ledger.stress_evaluations, 1);
+    EXPECT_LT(driver::recovery_errors(body.mesh, settings.materials, field.stress).sum(),
+              1e-20 * field.energy.sum());  // nothing to be estimated
   }
 }
 
@@ -89,7 +92,7 @@ TEST(Stress, LameShellConverges)
     six << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
     return six;
   };
-  std::vector<double> of_tets, of_nodes;
+  std::vector<double> of_tets, of_nodes, effectivity;
   for (int levels : {1, 2, 3}) {
     driver::Scenario scenario;
     const int layers = 3 << (levels - 1);
@@ -109,14 +112,30 @@ TEST(Stress, LameShellConverges)
     const driver::StepResult result = simulation.initial_state();
     ASSERT_TRUE(result.state) << result.why;
     const tissue::StressField field = simulation.tissue().stresses(result.state->tissue.u);
-    double off = 0.0, all = 0.0;
+    double off = 0.0, all = 0.0, true_error = 0.0;
     for (int t = 0; t < scenario.mesh.tet_count(); ++t) {
       Vec3 middle = Vec3::Zero();
       for (const Vec3& x : mesh::corners(scenario.mesh, t)) middle += 0.25 * x;
       const double volume = mesh::tet_volume(scenario.mesh, t);
       off += volume * (field.stress.segment<6>(6 * t) - exact(middle)).squaredNorm();
       all += volume * exact(middle).squaredNorm();
+      // Energy error at four points of the tet (degree 2).
+      for (int q = 0; q < 4; ++q) {
+        Vec3 x = Vec3::Zero();
+        const auto corner = mesh::corners(scenario.mesh, t);
+        for (int a = 0; a < 4; ++a)
+          x += (a == q ? 0.5854101966249685 : 0.1381966011250105) *
+               corner[static_cast<std::size_t>(a)];
+        const Six d = field.stress.segment<6>(6 * t) - exact(x);
+        const double trace = d.head<3>().sum();
+        true_error += 0.25 * volume / E *
+                      ((1 + nu) * (d.head<3>().squaredNorm() + 2 * d.tail<3>().squaredNorm()) -
+                       nu * trace * trace);
+      }
     }
+    const core::VecX estimate =
+        driver::recovery_errors(scenario.mesh, scenario.tissue.materials, field.stress);
+    effectivity.push_back(std::sqrt(estimate.sum() / true_error));
     of_tets.push_back(std::sqrt(off / all));
     const core::VecX means = driver::nodal_means(scenario.mesh, field.stress, 6);
     off = all = 0.0;
@@ -130,6 +149,10 @@ TEST(Stress, LameShellConverges)
   }
   std::printf("[ stress ] tets %.3g %.3g %.3g, nodes %.3g %.3g %.3g\n", of_tets[0], of_tets[1],
               of_tets[2], of_nodes[0], of_nodes[1], of_nodes[2]);
+  std::printf("[ error estimate ] over the true one %.3f %.3f %.3f\n", effectivity[0],
+              effectivity[1], effectivity[2]);
+  EXPECT_NEAR(effectivity[2], 1.0, 0.15);
+  EXPECT_LT(std::abs(effectivity[2] - 1.0), std::abs(effectivity[1] - 1.0));
   EXPECT_GT(std::log2(of_tets[1] / of_tets[2]), 0.85);
   EXPECT_GT(std::log2(of_nodes[1] / of_nodes[2]), 1.3);
 }
