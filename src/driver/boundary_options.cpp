@@ -79,10 +79,11 @@ tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mes
                                "_field: the group has one displacement for all nodes already");
     const bool moves = uniform || !field.empty();
     const bool pulls = options.given("boundary_<surf>_traction", group);
-    const auto curve = read_curve(options.text("boundary_<surf>_curve", group), comm);
-    if (curve && !moves && !pulls)
+    const std::string file = options.text("boundary_<surf>_curve", group);
+    if (!file.empty() && !moves && !pulls)
       throw core::option_error("option -boundary_" + group +
                                "_curve: the group has neither displacement nor traction");
+    const auto curve = read_curve(file, comm);
     if (moves) {
       mesh::group_nodes(mesh, group);
       boundary.displacements.push_back(
