@@ -136,6 +136,16 @@ VecX Cavities::gradient(int i, const Shape& shape) const
   return law::volume_gradient(walls_[index(i)].surface(), shape[index(i)]);
 }
 
+/// Forces of the fluid's weight on the wall as it sees it.
+void Cavities::add_weight(int i, const Shape& shape, const TimeStep& now, VecX& forces) const
+{
+  const CavitySettings& one = settings_.cavities[index(i)];
+  const Wall& wall = walls_[index(i)];
+  if (one.weight.isZero(0.0)) return;
+  const VecX& x = one.model == Model::follower ? shape[index(i)] : wall.undeformed();
+  forces += now.load * law::moment_gradient(wall.surface(), x, one.weight);
+}
+
 fem::Load Cavities::load(const State& state, const Shape& shape, const TimeStep& now) const
 {
   fem::Load load;
@@ -149,10 +159,7 @@ fem::Load Cavities::load(const State& state, const Shape& shape, const TimeStep&
     p[index(i)] = given ? given_pressure(i, now) : state.cavity[index(i)].pressure;
     VecX f = VecX::Zero(wall.undeformed().size());
     if (given) f += p[index(i)] * gradient(i, shape);
-    if (!one.weight.isZero(0.0))
-      f += now.load * law::moment_gradient(wall.surface(),
-                                           follower ? shape[index(i)] : wall.undeformed(),
-                                           one.weight);
+    add_weight(i, shape, now, f);
     follows = follows || (follower && (p[index(i)] != 0.0 || !one.weight.isZero(0.0)));
     if (f.isZero(0.0)) continue;
     if (load.force.value.size() == 0) load.force = space_->zero();
@@ -182,15 +189,9 @@ OwnedField Cavities::forces(const State& state, const Shape& shape, const TimeSt
 {
   OwnedField f = space_->zero();
   for (int i = 0; i < size(); ++i) {
-    const CavitySettings& one = settings_.cavities[index(i)];
-    const Wall& wall = walls_[index(i)];
     VecX mine = state.cavity[index(i)].pressure * gradient(i, shape);
-    if (!one.weight.isZero(0.0))
-      mine += now.load * law::moment_gradient(
-                             wall.surface(),
-                             one.model == Model::follower ? shape[index(i)] : wall.undeformed(),
-                             one.weight);
-    f.value += wall.to_nodes(mine, *space_).value;
+    add_weight(i, shape, now, mine);
+    f.value += walls_[index(i)].to_nodes(mine, *space_).value;
   }
   return f;
 }

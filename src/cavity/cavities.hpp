@@ -166,6 +166,7 @@ class Cavities
   const VoidPiece* entered(int cavity, const std::vector<VoidPiece>& voids,
                            const Shape& shape) const;
   VecX gradient(int i, const Shape& shape) const;
+  void add_weight(int i, const Shape& shape, const TimeStep& now, VecX& forces) const;
   double linear_volume(int i, const OwnedField& u) const;
   void set_gaps(const CavityRows& rows, constraint::Set& set) const;
   double given_pressure(int i, const TimeStep& now) const;
