@@ -111,10 +111,8 @@ class Cavities
   const Wall& wall(int i) const { return walls_[index(i)]; }
   bool any(Model model) const;
   bool follows() const { return any(Model::follower); }  ///< steps are iterated
-  bool exact() const
-  {
-    return follows() || any(Model::frozen);
-  }  ///< volumes are those of the walls
+  /// Some volume is that of the deformed wall.
+  bool exact() const { return follows() || any(Model::frozen); }
 
   State start() const;
   /// Events and amounts of a step, decided before the solve: what the needles have opened, what is
@@ -143,7 +141,8 @@ class Cavities
   /// True when every exact volume is that of its fluid, to its tolerance.
   bool closed(const State& state, const Shape& shape, const TimeStep& now) const;
   /// Ends a step: flows are booked, and what is to be known of it. Collective.
-  std::vector<CavityReport> accept(State& state, const OwnedField& u, const TimeStep& now) const;
+  std::vector<CavityReport> accept(State& state, const OwnedField& u, const Shape& shape,
+                                   const TimeStep& now) const;
 
   // Cavities of the frozen model: their pressures are found outside the constraint system.
   std::vector<int> frozen(const State& state) const;

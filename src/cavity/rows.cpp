@@ -158,10 +158,10 @@ bool Cavities::closed(const State& state, const Shape& shape, const TimeStep& no
   return true;
 }
 
-std::vector<CavityReport> Cavities::accept(State& state, const OwnedField& u,
+std::vector<CavityReport> Cavities::accept(State& state, const OwnedField& u, const Shape& shape,
                                            const TimeStep& now) const
 {
-  const VecX V = volumes(shape(u));
+  const VecX V = volumes(shape);
   const VecX p = pressures(state);
   const Fluid fluids = fluid(state, p, now);
   std::vector<CavityReport> reports;

@@ -12,12 +12,7 @@ namespace trocar::cavity {
 namespace {
 
 using mesh::Face;
-
-Face sorted(Face face)
-{
-  std::sort(face.begin(), face.end());
-  return face;
-}
+using mesh::sorted;
 
 std::string tag_of(const mesh::Mesh& mesh, int node)
 {

@@ -8,7 +8,8 @@
 namespace trocar::driver {
 Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
                                               const tissue::FreeMotion& tissue, double tolerance,
-                                              State& next, core::VecX& last, StepReport& report)
+                                              const cavity::Shape& walls, State& next,
+                                              core::VecX& last, StepReport& report)
 {
   Pass pass;
   pass.tolerance = tolerance;
@@ -20,7 +21,7 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
   pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
   if (cavities_)
     pass.rows.of_cavities =
-        cavities_->add_rows(next.cavities, walls(next), next.tissue.u, now, pass.rows.set);
+        cavities_->add_rows(next.cavities, walls, next.tissue.u, now, pass.rows.set);
   pass.probes = pass.rows.set.probes();
   const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
   if (last.size() != pass.rows.set.size()) last = pass.rows.set.starts();

@@ -6,17 +6,17 @@ namespace trocar::driver {
 // Where the energy of a step went. Rows do work λ·δ only in slip: the rest of it passes from needle
 // to tissue and is in neither account.
 void Simulation::account(const State& old, const core::TimeStep& now, const Pass& pass,
-                         const StepReport& report, State& next) const
+                         const cavity::Shape& walls, const StepReport& report, State& next) const
 {
   const tissue::Work tissue =
-      tissue_.work(old.tissue, next.tissue, now, all_forces(pass, next, now));
+      tissue_.work(old.tissue, next.tissue, now, all_forces(pass, next, walls, now));
   EnergyAccount& energy = next.energy;
   energy = old.energy;
   energy.elastic = tissue.elastic;
   energy.kinetic = tissue.kinetic;
   energy.supplied += tissue.supplied;
   if (cavities_)  // by the pressures of the fluids
-    energy.supplied += space_.dot(cavities_->forces(next.cavities, walls(next), now),
+    energy.supplied += space_.dot(cavities_->forces(next.cavities, walls, now),
                                   {next.tissue.u.value - old.tissue.u.value});
   energy.damping += tissue.damped;
   for (std::size_t i = 0; i < needles_.size(); ++i) {

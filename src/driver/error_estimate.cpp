@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/words.hpp"
+#include "driver/stress_fields.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -37,21 +38,13 @@ VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Material>
 {
   VecX errors = VecX::Zero(mesh.tet_count());
   for (int region = 0; region < static_cast<int>(materials.size()); ++region) {
-    const auto inside = [&](int t) { return mesh.region[static_cast<std::size_t>(t)] == region; };
-    VecX sum = VecX::Zero(6 * mesh.node_count()), weight = VecX::Zero(mesh.node_count());
-    for (int t = 0; t < mesh.tet_count(); ++t)
-      for (int node : mesh.tets[static_cast<std::size_t>(t)]) {
-        if (!inside(t)) continue;
-        const double volume = mesh::tet_volume(mesh, t);
-        sum.segment<6>(6 * node) += volume * stress.segment<6>(6 * t);
-        weight[node] += volume;
-      }
+    const VecX means = nodal_means(mesh, stress, region);
     for (int t = 0; t < mesh.tet_count(); ++t) {
-      if (!inside(t)) continue;
+      if (mesh.region[static_cast<std::size_t>(t)] != region) continue;
       std::array<Six, 4> d;
       for (std::size_t a = 0; a < 4; ++a) {
         const int node = mesh.tets[static_cast<std::size_t>(t)][a];
-        d[a] = sum.segment<6>(6 * node) / weight[node] - stress.segment<6>(6 * t);
+        d[a] = means.segment<6>(6 * node) - stress.segment<6>(6 * t);
       }
       errors[t] =
           integral(materials[static_cast<std::size_t>(region)], d, mesh::tet_volume(mesh, t));

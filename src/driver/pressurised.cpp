@@ -7,10 +7,11 @@
 // around the laws of all other rows.
 namespace trocar::driver {
 
-/// Walls where the state has them; nothing looks at them when no pressure follows.
-cavity::Shape Simulation::walls(const State& state) const
+/// Walls where the state has them: looked at once for every place of the tissue, and only when some
+/// load or volume is theirs.
+cavity::Shape Simulation::walls_of(const State& state) const
 {
-  return cavities_->follows() ? cavities_->shape(state.tissue.u) : cavity::Shape{};
+  return cavities_ && cavities_->exact() ? cavities_->shape(state.tissue.u) : cavity::Shape{};
 }
 
 /// Hᵀλ of the rows that are not cavities [N].
@@ -24,10 +25,10 @@ fem::OwnedField Simulation::needle_forces(const Pass& pass) const
 
 /// Forces of needles and cavities on the tissue where it is now [N].
 fem::OwnedField Simulation::all_forces(const Pass& pass, const State& next,
-                                       const core::TimeStep& now) const
+                                       const cavity::Shape& walls, const core::TimeStep& now) const
 {
   fem::OwnedField forces = needle_forces(pass);
-  if (cavities_) forces.value += cavities_->forces(next.cavities, walls(next), now).value;
+  if (cavities_) forces.value += cavities_->forces(next.cavities, walls, now).value;
   return forces;
 }
 

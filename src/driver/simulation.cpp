@@ -55,7 +55,8 @@ StepResult Simulation::initial_state()
         {state.needles[i].shaft.tip(), insertion_->depth(state.insertions[i]), {}, {}});
   if (cavities_) {
     cavities_->take({}, {}, {}, result.state->cavities);
-    result.report.cavities = cavities_->accept(result.state->cavities, state.tissue.u, {});
+    result.report.cavities = cavities_->accept(result.state->cavities, state.tissue.u,
+                                               cavities_->shape(state.tissue.u), {});
   }
   result.report.tools.assign(scenario_.tissue.boundary.displacements.size(), Vec3::Zero());
   return result;
@@ -92,19 +93,22 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
   const int most = to_tolerance ? most_linearisations : scenario_.time.newton_max;
   double residual = std::numeric_limits<double>::infinity();
   core::VecX last;  // multipliers, to go on from
+  cavity::Shape walls = walls_of(next);
   for (int iteration = 1; iteration <= most; ++iteration) {
     const fem::OwnedField iterate = most > 1 ? next.tissue.u : fem::OwnedField{};
     const double last_residual = residual;
-    const Pass pass = linearised_step(old, now, residual, next, last, report);  // 2 to 5
+    const Pass pass = linearised_step(old, now, residual, walls, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
-    if (most == 1 || balanced(old, next, now, pass, residual)) {
-      accept(old, now, pass, next, report);
-      if (scenario_.output.energy) account(old, now, pass, report, next);
+    if (most == 1 || balanced(old, next, walls, now, pass, residual)) {
+      accept(old, now, pass, walls, next, report);
+      if (scenario_.output.energy) account(old, now, pass, walls, report, next);
       return {std::move(next), std::move(report), {}};
     }
-    if (pass.rows.set.empty() && residual > last_residual)  // overshoot: half the increment
+    if (pass.rows.set.empty() && residual > last_residual) {  // overshoot: half the increment
       next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.value);
+      walls = walls_of(next);
+    }
   }
   const std::string what = residual <= balance_tolerance
                                ? "the gaps of the rows stay open"
@@ -116,20 +120,21 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
 // The step of both papers: every body moves freely, the rows that couple them are solved in one
 // small dense problem, and the bodies are corrected by it.
 Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeStep& now,
-                                             double residual, State& next, core::VecX& last,
-                                             StepReport& report)
+                                             double residual, cavity::Shape& walls, State& next,
+                                             core::VecX& last, StepReport& report)
 {
   Pass pass;
   fem::Load load;
-  if (cavities_) load = cavities_->load(next.cavities, walls(next), now);
+  if (cavities_) load = cavities_->load(next.cavities, walls, now);
   const tissue::FreeMotion tissue =
       tissue_.free_motion(old.tissue, next.tissue.u, now, load);  // 2 each body alone
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
   for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
-    pass = constrained_step(old, now, tissue, lag_tolerance(now, residual), next, last,
+    pass = constrained_step(old, now, tissue, lag_tolerance(now, residual), walls, next, last,
                             report);  // 3 to 5
+    if (!pass.trouble) walls = walls_of(next);
     if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
   }
@@ -189,14 +194,14 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
   return rows;
 }
 
-bool Simulation::balanced(const State& old, const State& next, const core::TimeStep& now,
-                          const Pass& pass, double& residual) const
+bool Simulation::balanced(const State& old, const State& next, const cavity::Shape& walls,
+                          const core::TimeStep& now, const Pass& pass, double& residual) const
 {
   double scale = 0.0;
   fem::OwnedField r = tissue_.residual(old.tissue, next.tissue.u, now, scale);
   const bool pushed = pass.lambda.lambda.size() > 0;
   if (pushed || cavities_) {
-    fem::OwnedField forces = all_forces(pass, next, now);
+    fem::OwnedField forces = all_forces(pass, next, walls, now);
     tissue_.fixed().clear(forces);
     r.value += forces.value;
     scale += space_.norm(forces);
@@ -210,8 +215,7 @@ bool Simulation::balanced(const State& old, const State& next, const core::TimeS
     residual = std::max(residual, needles_[i].relative_increment(again, lever));
   }
   if (!(residual <= balance_tolerance)) return false;
-  if (cavities_ && cavities_->exact() &&
-      !cavities_->closed(next.cavities, cavities_->shape(next.tissue.u), now))
+  if (cavities_ && cavities_->exact() && !cavities_->closed(next.cavities, walls, now))
     return false;
   return gaps_closed(now, next, pass);
 }
@@ -229,13 +233,15 @@ bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const
   return true;
 }
 
-void Simulation::accept(const State& old, const core::TimeStep& now, const Pass& pass, State& next,
-                        StepReport& report) const
+void Simulation::accept(const State& old, const core::TimeStep& now, const Pass& pass,
+                        const cavity::Shape& walls, State& next, StepReport& report) const
 {
   if (!scenario_.tissue.boundary.displacements.empty())
-    report.tools = tissue_.tool_forces(old.tissue, next.tissue.u, now, all_forces(pass, next, now));
+    report.tools =
+        tissue_.tool_forces(old.tissue, next.tissue.u, now, all_forces(pass, next, walls, now));
   if (cavities_) {
-    report.cavities = cavities_->accept(next.cavities, next.tissue.u, now);
+    const cavity::Shape shape = cavities_->exact() ? walls : cavities_->shape(next.tissue.u);
+    report.cavities = cavities_->accept(next.cavities, next.tissue.u, shape, now);
     for (cavity::CavityReport& cavity : report.cavities)
       cavity.iterations = std::max(report.linearisations, report.pressure_updates);
   }

@@ -146,11 +146,12 @@ class Simulation
     double tolerance = 0.0;                      ///< of an approach, see lag_tolerance
   };
 
-  Pass linearised_step(const State& old, const core::TimeStep& now, double residual, State& next,
-                       core::VecX& last, StepReport& report);
+  Pass linearised_step(const State& old, const core::TimeStep& now, double residual,
+                       cavity::Shape& walls, State& next, core::VecX& last, StepReport& report);
   Pass constrained_step(const State& old, const core::TimeStep& now,
-                        const tissue::FreeMotion& tissue, double tolerance, State& next,
-                        core::VecX& last, StepReport& report);
+                        const tissue::FreeMotion& tissue, double tolerance,
+                        const cavity::Shape& walls, State& next, core::VecX& last,
+                        StepReport& report);
   void meet_frozen_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
                         const core::VecX& last, Pass& pass, State& next, StepReport& report);
   void at_pressures(const fem::OwnedField& free, const std::vector<fem::OwnedField>& per_p,
@@ -160,9 +161,10 @@ class Simulation
   const cavity::PressureAnswers& unit_answers(const cavity::State& state,
                                               const core::TimeStep& now);
   fem::OwnedField needle_forces(const Pass& pass) const;
-  fem::OwnedField all_forces(const Pass& pass, const State& next, const core::TimeStep& now) const;
+  fem::OwnedField all_forces(const Pass& pass, const State& next, const cavity::Shape& walls,
+                             const core::TimeStep& now) const;
   void advance_cavities(const State& old, State& next) const;
-  cavity::Shape walls(const State& state) const;
+  cavity::Shape walls_of(const State& state) const;
   bool gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const;
   std::optional<std::string> move_needles(const State& old, State& next) const;
   Rows coupling_rows(const core::TimeStep& now, const State& state) const;
@@ -179,12 +181,12 @@ class Simulation
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
   tissue::Push push_of(const Pass& pass) const;
   double lag_tolerance(const core::TimeStep& now, double residual) const;
-  bool balanced(const State& old, const State& next, const core::TimeStep& now, const Pass& pass,
-                double& residual) const;
-  void accept(const State& old, const core::TimeStep& now, const Pass& pass, State& next,
-              StepReport& report) const;
+  bool balanced(const State& old, const State& next, const cavity::Shape& walls,
+                const core::TimeStep& now, const Pass& pass, double& residual) const;
+  void accept(const State& old, const core::TimeStep& now, const Pass& pass,
+              const cavity::Shape& walls, State& next, StepReport& report) const;
   void account(const State& old, const core::TimeStep& now, const Pass& pass,
-               const StepReport& report, State& next) const;
+               const cavity::Shape& walls, const StepReport& report, State& next) const;
 
   const Scenario& scenario_;
   core::Ledger ledger_;

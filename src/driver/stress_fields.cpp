@@ -31,17 +31,19 @@ Vec3 principal_values(const Six& s)
   return eigen.eigenvalues().reverse();
 }
 
-VecX nodal_means(const mesh::Mesh& mesh, const VecX& cells, Eigen::Index columns)
+VecX nodal_means(const mesh::Mesh& mesh, const VecX& stress, int region)
 {
-  VecX sum = VecX::Zero(columns * mesh.node_count()), weight = VecX::Zero(mesh.node_count());
+  VecX sum = VecX::Zero(6 * mesh.node_count()), weight = VecX::Zero(mesh.node_count());
   for (int t = 0; t < mesh.tet_count(); ++t) {
+    if (region >= 0 && mesh.region[static_cast<std::size_t>(t)] != region) continue;
     const double volume = mesh::tet_volume(mesh, t);
     for (int node : mesh.tets[static_cast<std::size_t>(t)]) {
-      sum.segment(columns * node, columns) += volume * cells.segment(columns * t, columns);
+      sum.segment<6>(6 * node) += volume * stress.segment<6>(6 * t);
       weight[node] += volume;
     }
   }
-  for (Eigen::Index i = 0; i < weight.size(); ++i) sum.segment(columns * i, columns) /= weight[i];
+  for (Eigen::Index i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0.0) sum.segment<6>(6 * i) /= weight[i];
   return sum;
 }
 
@@ -53,10 +55,10 @@ std::vector<io::Field> stress_fields(const Simulation& simulation, const State& 
   const tissue::StressField found = simulation.tissue().stresses(state.tissue.u);
   if (!simulation.space().comm().root()) return fields;  // only rank 0 writes
   const Eigen::Index tets = found.energy.size();
-  VecX mises(tets), principal(3 * tets);
+  VecX mises(wanted.von_mises ? tets : 0), principal(wanted.principal_stress ? 3 * tets : 0);
   for (Eigen::Index t = 0; t < tets; ++t) {
     const Six s = found.stress.segment<6>(6 * t);
-    mises[t] = von_mises(s);
+    if (wanted.von_mises) mises[t] = von_mises(s);
     if (wanted.principal_stress) principal.segment<3>(3 * t) = principal_values(s);
   }
   if (wanted.stress) fields.push_back(field("/stress", 6, "Pa", found.stress, false));
@@ -67,7 +69,7 @@ std::vector<io::Field> stress_fields(const Simulation& simulation, const State& 
     fields.push_back(field("/strain_energy", 0, "J/m^3", found.energy, false));
   if (wanted.nodal_stress)
     fields.push_back(field("/nodal_stress", 6, "Pa",
-                           nodal_means(simulation.scenario().mesh, found.stress, 6), true));
+                           nodal_means(simulation.scenario().mesh, found.stress), true));
   return fields;
 }
 

@@ -10,8 +10,9 @@ namespace trocar::driver {
 /// (nodes, 6; means of the tets around a node by volume). Collective.
 std::vector<io::Field> stress_fields(const Simulation& simulation, const State& state);
 
-/// Means by volume of the tets' values (columns · tets) around every node (columns · nodes).
-core::VecX nodal_means(const mesh::Mesh& mesh, const core::VecX& cells, Eigen::Index columns);
+/// Means by volume of the stress (6 · tets) of the tets around every node (6 · nodes) [Pa]; of one
+/// volume of the mesh alone, 0 where it has no tet, when a region is named. Not collective.
+core::VecX nodal_means(const mesh::Mesh& mesh, const core::VecX& stress, int region = -1);
 
 /// sqrt(3 J₂) of a stress xx, yy, zz, xy, yz, xz [Pa].
 double von_mises(const Eigen::Matrix<double, 6, 1>& stress);

@@ -9,12 +9,6 @@
 namespace trocar::mesh {
 namespace {
 
-Face sorted(Face face)
-{
-  std::sort(face.begin(), face.end());
-  return face;
-}
-
 /// Index of the volume to be removed.
 int volume_index(const Mesh& mesh, const std::string& volume)
 {

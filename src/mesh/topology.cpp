@@ -11,13 +11,13 @@ namespace {
 constexpr std::array<std::array<std::size_t, 3>, 4> tet_faces{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
+}  // namespace
+
 Face sorted(Face face)
 {
   std::sort(face.begin(), face.end());
   return face;
 }
-
-}  // namespace
 
 NodeToTets node_to_tets(const Mesh& mesh)
 {

@@ -6,6 +6,9 @@
 
 namespace trocar::mesh {
 
+/// The face's nodes ascending: its name, whichever way it looks.
+Face sorted(Face face);
+
 /// Tets around each node, compressed: those of node i are tet[start[i]] … tet[start[i+1]-1],
 /// ascending.
 struct NodeToTets

@@ -34,8 +34,7 @@ core::VecX read(const Probes& probes, const OwnedField& u, const fem::Space& spa
   for (std::size_t k = 0; k < probes.wide.size(); ++k)
     values[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] =
         probes.wide[k]->vector.value.dot(u.value);
-  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
-                           MPI_SUM, space.comm().get()));
+  space.comm().sum(values);
   return values;
 }
 

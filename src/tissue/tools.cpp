@@ -1,6 +1,6 @@
 #include <map>
 
-#include "tissue/tissue.hpp"
+#include "tissue/element.hpp"
 
 // Prescribed displacements as tools: plates, clamps, single nodes, and the forces they take.
 namespace trocar::tissue {
@@ -30,8 +30,13 @@ void Tissue::find_tools()
 std::vector<Vec3> Tissue::tool_forces(const TissueState& old, const OwnedField& u,
                                       const TimeStep& step, const OwnedField& more) const
 {
-  std::vector<Mat3> R;
-  rotations(space_->with_ghosts(u), R);
+  std::vector<Mat3> R(elements_.size(), Mat3::Identity());
+  const auto u_g = space_->with_ghosts(u);
+  for (std::size_t e : tool_elements_)
+    if (settings_.model == Model::corotational)
+      R[e] = core::polar_rotation(
+          Mat3::Identity() +
+          nodal_gradient(elements_[e].shape, nodal_values(u_g, space_->tets()[e])));
   const OwnedField held = forces(old, u, R, step, nullptr, &tool_elements_);
   const std::size_t count = settings_.boundary.displacements.size();
   core::VecX sums = core::VecX::Zero(3 * static_cast<Eigen::Index>(count));
