@@ -3,7 +3,6 @@ supports are not said, for four declared choices and two models.
 
 Writes results/block_pv_study/{block_pv.csv,block_pv.png,shapes.png}.
 """
-import argparse
 
 import h5py
 import matplotlib
@@ -13,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from common import ROOT, mesh, run, write_table
+from common import begin, mesh, run, write_table
 
 CASES = {
     "plane, 2 cm hole, bottom held": ("pv_slab", 0.02, "bottom,faces:z"),
@@ -41,15 +40,11 @@ def draw_shape(axis, folder, which, title):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--quick", action="store_true", help="plane cases only")
-    args = parser.parse_args()
-    folder = ROOT / "results/block_pv_study"
-    folder.mkdir(parents=True, exist_ok=True)
+    quick, folder = begin("block_pv_study", "plane cases only")
     rows = []
     figure, axis = plt.subplots(figsize=(6, 4.4), constrained_layout=True)
     for k, (name, (geometry, side, fix)) in enumerate(CASES.items()):
-        if args.quick and geometry != "pv_slab":
+        if quick and geometry != "pv_slab":
             continue
         path = mesh(geometry, f"pv_{k}", side=side)
         changes = {"mesh": path, "fix": fix}

@@ -1,4 +1,5 @@
 """What studies share: running the program, reading results, writing tables."""
+import argparse
 import csv
 import subprocess
 from pathlib import Path
@@ -6,6 +7,15 @@ from pathlib import Path
 import h5py
 
 ROOT = Path(__file__).resolve().parents[2]
+
+
+def begin(name, quick):
+    """Reads --quick (what it does, in words) and makes results/NAME; gives both."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--quick", action="store_true", help=quick)
+    folder = ROOT / "results" / name
+    folder.mkdir(parents=True, exist_ok=True)
+    return parser.parse_args().quick, folder
 
 
 def run(options_file, folder, changes, ranks=1):

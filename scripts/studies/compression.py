@@ -2,7 +2,6 @@
 
 Writes results/compression/{compression.csv,compression.png}.
 """
-import argparse
 import subprocess
 import sys
 
@@ -12,20 +11,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, run, write_table
+from common import ROOT, begin, run, write_table
 
 AREA, HEIGHT, YOUNG = 0.04 * 0.04, 0.04, 15200.0
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--quick", action="store_true", help="one mesh")
-    args = parser.parse_args()
-    folder = ROOT / "results/compression"
-    folder.mkdir(parents=True, exist_ok=True)
+    quick, folder = begin("compression", "one mesh")
     rows = []
     figure, axis = plt.subplots(figsize=(5.5, 4.2), constrained_layout=True)
-    for cells in [8] if args.quick else [4, 8, 16]:
+    for cells in [8] if quick else [4, 8, 16]:
         path = f"build/meshes/gelatin_{cells}.msh"
         nodes = [str(cells + 1)] * 3
         subprocess.run([sys.executable, "meshes/structured_beam", "--nodes", *nodes, "--size",

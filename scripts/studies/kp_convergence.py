@@ -4,7 +4,6 @@ Cold starts at strains of 0.3 to 15 % for a point, traction and plate, two sourc
 tolerances; the golden section the paper mentions; then a tool path at 512 Hz and 0.1 m/s.
 Writes results/kp_convergence_study/{updates.csv,path.csv,kp_convergence.png}.
 """
-import argparse
 
 import matplotlib
 
@@ -12,7 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, run, write_table
+from common import begin, run, write_table
 
 HEIGHT, YOUNG = 0.05, 34000.0
 TOLERANCES = (1e-2, 1e-3, 1e-6, 1e-12)
@@ -112,12 +111,8 @@ def path(folder):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--quick", action="store_true", help="one strain")
-    args = parser.parse_args()
-    folder = ROOT / "results/kp_convergence_study"
-    folder.mkdir(parents=True, exist_ok=True)
-    strains = [0.03] if args.quick else [0.003, 0.01, 0.03, 0.06, 0.1, 0.15]
+    quick, folder = begin("kp_convergence_study", "one strain")
+    strains = [0.03] if quick else [0.003, 0.01, 0.03, 0.06, 0.1, 0.15]
     rows = cold(folder, strains)
     write_table(folder / "updates.csv", rows)
     write_table(folder / "path.csv", path(folder))

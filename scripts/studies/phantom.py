@@ -4,7 +4,6 @@ Three meshes of linear tets and the paper's mesh recipe, slipping and bonded pla
 Linear tets at nu = 0.485 are not converged in pressure and dP/dV: the table says so itself.
 Writes results/phantom_study/{phantom.csv,contours.png,markers.png}.
 """
-import argparse
 
 import h5py
 import matplotlib
@@ -13,7 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, mesh, run, write_table
+from common import begin, mesh, run, write_table
 
 CENTRE = np.array([0.03, 0.025, 0.025])
 PLATES = {"slip": {}, "bonded": {"fix": "probe,bottom:y", "boundary_stage_displacement": "-0.009,0,0"}}
@@ -84,13 +83,9 @@ def contour_point(run_folder):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--quick", action="store_true", help="the coarsest mesh and the recipe")
-    args = parser.parse_args()
-    folder = ROOT / "results/phantom_study"
-    folder.mkdir(parents=True, exist_ok=True)
+    quick, folder = begin("phantom_study", "the coarsest mesh and the recipe")
     meshes = {"recipe": "build/meshes/phantom_recipe.msh", "h": "build/meshes/phantom.msh"}
-    if not args.quick:
+    if not quick:
         meshes["h/1.5"] = mesh("phantom", "phantom_2", h=0.0052 / 1.5, hw=0.0048 / 1.5)
         meshes["h/2.2"] = mesh("phantom", "phantom_3", h=0.0052 / 2.2, hw=0.0048 / 2.2)
     rows = []

@@ -3,7 +3,6 @@
 
 Writes results/pulsing_study/{pulsing.csv,pulsing.png}.
 """
-import argparse
 
 import matplotlib
 
@@ -11,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, run, write_table
+from common import begin, run, write_table
 
 SCENE, PERIOD = "pulsing_vessel.opts", 0.8333
 
@@ -28,17 +27,13 @@ def swing(folder, changes):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--quick", action="store_true", help="one step length")
-    args = parser.parse_args()
-    folder = ROOT / "results/pulsing_study"
-    folder.mkdir(parents=True, exist_ok=True)
+    quick, folder = begin("pulsing_study", "one step length")
     rows = []
     ratio = static_ratio(folder)
     figure, axis = plt.subplots(figsize=(6, 4), constrained_layout=True)
     for model in ("linear", "corotational"):
         for analysis in ("static", "dynamic"):
-            for step in [PERIOD / 40] if args.quick else [PERIOD / 20, PERIOD / 40, PERIOD / 80]:
+            for step in [PERIOD / 40] if quick else [PERIOD / 20, PERIOD / 40, PERIOD / 80]:
                 changes = {"tissue_model": model, "cavity_model": "linear" if model == "linear" else "follower",
                            "analysis": analysis, "time_step": step, "time_end": 3 * PERIOD}
                 answer, worst, t, series = swing(folder, changes)

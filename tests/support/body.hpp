@@ -31,6 +31,16 @@ struct Body
   tissue::Tissue tissue;
 };
 
+/// The field f(X) of the body's owned nodes.
+inline fem::OwnedField nodal(const Body& body,
+                             const std::function<core::Vec3(const core::Vec3&)>& f)
+{
+  fem::OwnedField field = body.space.zero();
+  for (int i = 0; i < body.space.owned(); ++i)
+    field.node(i) = f(body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))]);
+  return field;
+}
+
 /// The undeformed operator scale_k K + scale_m M of a mesh as a dense matrix in file numbering,
 /// assembled with the textbook 6x12 strain matrix: independent of the program's block formula.
 core::MatX dense_operator(const mesh::Mesh& mesh, const tissue::Material& material, double scale_k,

@@ -16,13 +16,7 @@ using core::Mat3;
 using core::Vec3;
 using Six = Eigen::Matrix<double, 6, 1>;
 
-fem::OwnedField nodal(const test::Body& body, const std::function<Vec3(const Vec3&)>& f)
-{
-  fem::OwnedField field = body.space.zero();
-  for (int i = 0; i < body.space.owned(); ++i)
-    field.node(i) = f(body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))]);
-  return field;
-}
+using test::nodal;
 
 // A stretch along x: Hooke's stress of linear tissue; of corotational tissue the Cauchy stress of
 // the stretch, turned with the body by any rotation.

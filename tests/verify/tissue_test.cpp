@@ -21,13 +21,7 @@ tissue::TissueSettings all_faces_held(tissue::Model model)
   return settings;
 }
 
-fem::OwnedField nodal(const test::Body& body, const std::function<Vec3(const Vec3&)>& f)
-{
-  fem::OwnedField field = body.space.zero();
-  for (int i = 0; i < body.space.owned(); ++i)
-    field.node(i) = f(body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))]);
-  return field;
-}
+using test::nodal;
 
 const core::TimeStep at_rest{0.0, 1.0, true};
 
