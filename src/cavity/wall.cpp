@@ -6,11 +6,13 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::cavity {
 namespace {
 
+using core::MatX;
 using mesh::Face;
 using mesh::sorted;
 
@@ -59,14 +61,18 @@ void Wall::orient(const mesh::Mesh& mesh, const mesh::SurfaceGroup& group)
                     "has a face with tissue on both sides " + at +
                         ": name the volume to be emptied with -cavity_<n>_region instead");
     faces.push_back({found->second[0], found->second[2], found->second[1]});
-    nodes_.insert(nodes_.end(), face.begin(), face.end());
+    for (int node : mesh::nodes_of(mesh, face)) nodes_.push_back(node);
   }
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  surface_.face_nodes = mesh.quadratic() ? 6 : 3;
   for (const Face& face : faces)
-    for (int node : face)
-      surface_.nodes.push_back(
-          static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin()));
+    for (int node : mesh::nodes_of(mesh, face)) surface_.nodes.push_back(vertex_of(node));
+}
+
+int Wall::vertex_of(int node) const
+{
+  return static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin());
 }
 
 /// Around every vertex the faces must hang together by edges: one fan.
@@ -75,8 +81,7 @@ void Wall::check_fans(const mesh::Mesh& mesh) const
   std::map<int, std::vector<std::array<int, 2>>> around;  // vertex -> edges opposite to it
   for (std::size_t f = 0; f < surface_.faces(); ++f)
     for (std::size_t k = 0; k < 3; ++k)
-      around[surface_.nodes[3 * f + k]].push_back(
-          {surface_.nodes[3 * f + (k + 1) % 3], surface_.nodes[3 * f + (k + 2) % 3]});
+      around[face_node(f, k)].push_back({face_node(f, (k + 1) % 3), face_node(f, (k + 2) % 3)});
   for (const auto& [vertex, edges] : around) {
     std::vector<std::array<int, 2>> left(edges.begin() + 1, edges.end());
     std::set<int> reached{edges.front()[0], edges.front()[1]};
@@ -102,7 +107,7 @@ void Wall::check_edges(const mesh::Mesh& mesh, bool caps)
   std::map<std::array<int, 2>, int> directed;
   for (std::size_t f = 0; f < surface_.faces(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::array<int, 2> edge{surface_.nodes[3 * f + k], surface_.nodes[3 * f + (k + 1) % 3]};
+      const std::array<int, 2> edge{face_node(f, k), face_node(f, (k + 1) % 3)};
       if (++directed[edge] > 1)
         throw trouble(mesh, name_,
                       "touches itself along the edge of nodes " +
@@ -129,21 +134,40 @@ void Wall::check_edges(const mesh::Mesh& mesh, bool caps)
       throw trouble(mesh, name_,
                     "has a hole of " + std::to_string(rim.size()) + " edges around " +
                         place(middle) + ": close it, or give -cavity_<n>_cap");
-    cap(rim);
+    cap(rim, mesh);
   }
 }
 
-void Wall::cap(const std::vector<int>& rim)
+void Wall::cap(const std::vector<int>& rim, const mesh::Mesh& mesh)
 {
-  const int centre = static_cast<int>(nodes_.size() + rim_vertices_.size());
-  for (std::size_t k = 0; k < rim.size(); ++k) {
-    surface_.nodes.push_back(rim[k]);
-    surface_.nodes.push_back(rim[(k + 1) % rim.size()]);
-    surface_.nodes.push_back(centre);
+  const auto next = [&] { return static_cast<int>(nodes_.size() + cap_vertices_.size()); };
+  const std::size_t count = rim.size();
+  const bool quadratic = surface_.face_nodes == 6;
+  std::vector<int> around = rim;
+  for (std::size_t k = 0; quadratic && k < count; ++k)
+    around.push_back(
+        vertex_of(mesh.middle_of(nodes_[static_cast<std::size_t>(rim[k])],
+                                 nodes_[static_cast<std::size_t>(rim[(k + 1) % count])])));
+  Mean middle;
+  for (int vertex : around) middle.emplace_back(vertex, 1.0 / static_cast<double>(around.size()));
+  const int centre = next();
+  cap_vertices_.push_back(middle);
+  const int spokes = next();
+  for (std::size_t k = 0; quadratic && k < count; ++k) {
+    Mean half{{rim[k], 0.5}};
+    for (const auto& [vertex, weight] : middle) half.emplace_back(vertex, 0.5 * weight);
+    cap_vertices_.push_back(half);
   }
-  rim_vertices_.push_back(rim);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t after = (k + 1) % count;
+    for (int vertex : {rim[k], rim[after], centre}) surface_.nodes.push_back(vertex);
+    if (quadratic)
+      for (int vertex :
+           {around[count + k], spokes + static_cast<int>(after), spokes + static_cast<int>(k)})
+        surface_.nodes.push_back(vertex);
+  }
   std::vector<int> nodes;
-  for (int vertex : rim) nodes.push_back(nodes_[static_cast<std::size_t>(vertex)]);
+  for (int vertex : around) nodes.push_back(nodes_[static_cast<std::size_t>(vertex)]);
   rims_.push_back(std::move(nodes));
 }
 
@@ -151,23 +175,18 @@ void Wall::measure(const mesh::Mesh& mesh)
 {
   for (int node : nodes_)
     reference_ += mesh.x[static_cast<std::size_t>(node)] / static_cast<double>(nodes_.size());
-  VecX x(3 * static_cast<Eigen::Index>(nodes_.size() + rim_vertices_.size()));
+  VecX x = VecX::Zero(3 * static_cast<Eigen::Index>(nodes_.size() + cap_vertices_.size()));
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     x.segment<3>(3 * static_cast<Eigen::Index>(i)) =
         mesh.x[static_cast<std::size_t>(nodes_[i])] - reference_;
-  for (std::size_t c = 0; c < rim_vertices_.size(); ++c) {
-    Vec3 middle = Vec3::Zero();
-    for (int vertex : rim_vertices_[c])
-      middle += x.segment<3>(3 * vertex) / static_cast<double>(rim_vertices_[c].size());
-    x.segment<3>(3 * static_cast<Eigen::Index>(nodes_.size() + c)) = middle;
-  }
+  add_caps(x);
   undeformed_ = std::move(x);
   volume_ = law::volume(surface_, undeformed_);
   for (std::size_t f = 0; f < surface_.faces(); ++f) {
-    const auto at = [&](std::size_t k) -> Vec3 {
-      return undeformed_.segment<3>(3 * surface_.nodes[3 * f + k]);
-    };
-    area_ += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+    MatX face(3, surface_.face_nodes);
+    for (Eigen::Index k = 0; k < face.cols(); ++k)
+      face.col(k) = undeformed_.segment<3>(3 * face_node(f, static_cast<std::size_t>(k)));
+    area_ += law::face_shares(face).sum();
   }
   const double nothing = 1e-9 * std::pow(area_, 1.5);
   if (std::abs(volume_) <= nothing) throw trouble(mesh, name_, "encloses no volume");
@@ -183,21 +202,26 @@ VecX Wall::at_vertices(const OwnedField& field, const fem::Space& space) const
     if (local >= 0) values.segment<3>(3 * static_cast<Eigen::Index>(i)) = field.node(local);
   }
   space.comm().sum(values);
-  for (std::size_t c = 0; c < rim_vertices_.size(); ++c)
-    for (int vertex : rim_vertices_[c])
-      values.segment<3>(3 * static_cast<Eigen::Index>(nodes_.size() + c)) +=
-          values.segment<3>(3 * vertex) / static_cast<double>(rim_vertices_[c].size());
+  add_caps(values);
   return values;
+}
+
+/// Sets the vertices of the caps to their means.
+void Wall::add_caps(VecX& values) const
+{
+  for (std::size_t c = 0; c < cap_vertices_.size(); ++c)
+    for (const auto& [vertex, weight] : cap_vertices_[c])
+      values.segment<3>(3 * static_cast<Eigen::Index>(nodes_.size() + c)) +=
+          weight * values.segment<3>(3 * vertex);
 }
 
 OwnedField Wall::to_nodes(const VecX& vertices, const fem::Space& space) const
 {
   VecX values = vertices;
-  for (std::size_t c = 0; c < rim_vertices_.size(); ++c)
-    for (int vertex : rim_vertices_[c])
+  for (std::size_t c = 0; c < cap_vertices_.size(); ++c)
+    for (const auto& [vertex, weight] : cap_vertices_[c])
       values.segment<3>(3 * vertex) +=
-          vertices.segment<3>(3 * static_cast<Eigen::Index>(nodes_.size() + c)) /
-          static_cast<double>(rim_vertices_[c].size());
+          weight * vertices.segment<3>(3 * static_cast<Eigen::Index>(nodes_.size() + c));
   OwnedField field = space.zero();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const int local = space.owned_local(nodes_[i]);
@@ -209,15 +233,25 @@ OwnedField Wall::to_nodes(const VecX& vertices, const fem::Space& space) const
 bool Wall::holds(const Vec3& point, const VecX& x) const
 {
   double angle = 0.0;
-  for (std::size_t f = 0; f < surface_.faces(); ++f) {
-    const auto to = [&](std::size_t k) -> Vec3 {
-      return x.segment<3>(3 * surface_.nodes[3 * f + k]) - point;
+  const auto see = [&](std::size_t f, std::size_t i, std::size_t j, std::size_t k) {
+    const auto to = [&](std::size_t n) -> Vec3 {
+      return x.segment<3>(3 * face_node(f, n)) - point;
     };
     // van Oosterom and Strackee 1983
-    const Vec3 a = to(0), b = to(1), c = to(2);
+    const Vec3 a = to(i), b = to(j), c = to(k);
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     angle += 2.0 * std::atan2(a.dot(b.cross(c)),
                               la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  };
+  for (std::size_t f = 0; f < surface_.faces(); ++f) {
+    if (surface_.face_nodes == 3) {
+      see(f, 0, 1, 2);
+      continue;
+    }
+    see(f, 0, 3, 5);  // a quadratic face as four flat ones
+    see(f, 3, 1, 4);
+    see(f, 5, 4, 2);
+    see(f, 3, 4, 5);
   }
   return angle > 2.0 * std::numbers::pi;
 }

@@ -13,8 +13,9 @@ using core::VecX;
 using fem::OwnedField;
 
 /// The wall between a cavity's fluid and the tissue: a physical surface of the mesh, closed,
-/// oriented out of the fluid, its holes closed by caps. A cap is a fan of flat triangles around the
-/// mean of its rim: no new dofs, and the pressure on it is carried by the rim.
+/// oriented out of the fluid, its holes closed by caps. A cap is a fan of straight spokes around
+/// the mean of its rim: no new dofs, and the pressure on it is carried by the rim. Faces are flat,
+/// or quadratic when the mesh is.
 class Wall
 {
  public:
@@ -47,14 +48,22 @@ class Wall
   void orient(const mesh::Mesh& mesh, const mesh::SurfaceGroup& group);
   void check_edges(const mesh::Mesh& mesh, bool caps);
   void check_fans(const mesh::Mesh& mesh) const;
-  void cap(const std::vector<int>& rim);
+  void cap(const std::vector<int>& rim, const mesh::Mesh& mesh);
+  int vertex_of(int node) const;
+  int face_node(std::size_t face, std::size_t k) const
+  {
+    return surface_.nodes[static_cast<std::size_t>(surface_.face_nodes) * face + k];
+  }
   void measure(const mesh::Mesh& mesh);
+  void add_caps(VecX& values) const;
 
   std::string name_;
   law::ClosedSurface surface_;          ///< by vertex
   std::vector<int> nodes_;              ///< file node of the first vertices
   std::vector<std::vector<int>> rims_;  ///< in file nodes
-  std::vector<std::vector<int>> rim_vertices_;
+  /// The vertices of the caps, after those of the nodes: means of these, by weight.
+  using Mean = std::vector<std::pair<int, double>>;
+  std::vector<Mean> cap_vertices_;
   Vec3 reference_ = Vec3::Zero();
   VecX undeformed_;
   double volume_ = 0.0, area_ = 0.0;

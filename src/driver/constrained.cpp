@@ -6,7 +6,7 @@
 
 // 3 to 5 of the step: rows, the dense problem, the correction.
 namespace trocar::driver {
-Simulation::Pass Simulation::constrained_step(const State& old, const core::TimeStep& now,
+Simulation::Pass Simulation::constrained_step(const State& past, const core::TimeStep& now,
                                               const tissue::FreeMotion& tissue, double tolerance,
                                               const cavity::Shape& walls, State& next,
                                               core::VecX& last, StepReport& report)
@@ -15,7 +15,7 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
   pass.tolerance = tolerance;
   std::vector<needle::Linearised> needles;
   for (std::size_t i = 0; i < needles_.size(); ++i)
-    needles.push_back(needles_[i].linearise(old.needles[i], next.needles[i], now));
+    needles.push_back(needles_[i].linearise(past.needles[i], next.needles[i], now));
   for (const needle::Linearised& needle : needles)
     pass.needles.push_back({needle.held, needle.factor, needle.free_increment});
   pass.rows = coupling_rows(now, next);  // 3 rows H, gaps, laws
@@ -35,7 +35,7 @@ Simulation::Pass Simulation::constrained_step(const State& old, const core::Time
   if (pass.trouble) return pass;
   last = pass.lambda.lambda;
   if (cavities_) cavities_->take(pass.rows.of_cavities, last, now, next.cavities);
-  correct(old, now, needles, pass, next, report);
+  correct(past, now, needles, pass, next, report);
   return pass;
 }
 
@@ -181,17 +181,17 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
   return std::nullopt;
 }
 
-void Simulation::correct(const State& old, const core::TimeStep& now,
+void Simulation::correct(const State& past, const core::TimeStep& now,
                          const std::vector<needle::Linearised>& needles, const Pass& pass,
                          State& next, StepReport& report)
 {
   const bool pushed = pass.lambda.lambda.size() > 0;
-  next.tissue.v.value = now.inverse() * (next.tissue.u.value - old.tissue.u.value);
+  next.tissue.v.value = now.inverse() * (next.tissue.u.value - past.tissue.u.value);
   report.needles.assign(needles_.size(), {});
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();
     report.needles[i].base = needles_[i].base_wrench(next.needles[i], needles[i], lever);
-    next.needles[i] = needles_[i].correct(old.needles[i], next.needles[i], needles[i], lever, now);
+    next.needles[i] = needles_[i].correct(past.needles[i], next.needles[i], needles[i], lever, now);
   }
 }
 

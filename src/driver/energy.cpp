@@ -5,11 +5,12 @@ namespace trocar::driver {
 
 // Where the energy of a step went. Rows do work λ·δ only in slip: the rest of it passes from needle
 // to tissue and is in neither account.
-void Simulation::account(const State& old, const core::TimeStep& now, const Pass& pass,
-                         const cavity::Shape& walls, const StepReport& report, State& next) const
+void Simulation::account(const State& old, const State& past, const core::TimeStep& now,
+                         const Pass& pass, const cavity::Shape& walls, const StepReport& report,
+                         State& next) const
 {
   const tissue::Work tissue =
-      tissue_.work(old.tissue, next.tissue, now, all_forces(pass, next, walls, now));
+      tissue_.work(old.tissue, past.tissue, next.tissue, now, all_forces(pass, next, walls, now));
   EnergyAccount& energy = next.energy;
   energy = old.energy;
   energy.elastic = tissue.elastic;

@@ -1,9 +1,12 @@
 #include "driver/error_estimate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/words.hpp"
 #include "driver/stress_fields.hpp"
+#include "io/size_field.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -19,33 +22,47 @@ double complementary(const tissue::Material& m, const Six& s, const Six& t)
          m.young;
 }
 
-/// ∫ |Σ N_a d_a|² of the four nodal differences d_a, in the norm above; ∫ N_a N_b = V (1 + δ)/20.
-double integral(const tissue::Material& m, const std::array<Six, 4>& d, double volume)
+/// ∫ N_a N_b over V of a straight tet with n nodes.
+double mass(Eigen::Index n, Eigen::Index a, Eigen::Index b)
 {
-  Six sum = Six::Zero();
-  double own = 0.0;
-  for (const Six& one : d) {
-    sum += one;
-    own += complementary(m, one, one);
-  }
-  return volume / 20.0 * (complementary(m, sum, sum) + own);
+  if (n == 4) return a == b ? 0.1 : 0.05;
+  const auto ends = [](Eigen::Index k) { return mesh::tet_edges[static_cast<std::size_t>(k - 4)]; };
+  const auto on = [&](Eigen::Index corner, Eigen::Index middle) {
+    const auto [i, j] = ends(middle);
+    return static_cast<std::size_t>(corner) == i || static_cast<std::size_t>(corner) == j;
+  };
+  if (a < 4 && b < 4) return (a == b ? 6.0 : 1.0) / 420.0;
+  if (a < 4) return (on(a, b) ? -4.0 : -6.0) / 420.0;
+  if (b < 4) return mass(n, b, a);
+  if (a == b) return 32.0 / 420.0;
+  const auto [i, j] = ends(a);
+  const bool touch = on(static_cast<Eigen::Index>(i), b) || on(static_cast<Eigen::Index>(j), b);
+  return (touch ? 16.0 : 8.0) / 420.0;
+}
+
+/// ∫ |Σ N_a d_a|² of nodal differences d_a, in the norm above.
+double integral(const tissue::Material& m, const NodalStress& d, double volume)
+{
+  double sum = 0.0;
+  for (Eigen::Index a = 0; a < d.cols(); ++a)
+    for (Eigen::Index b = 0; b < d.cols(); ++b)
+      sum += mass(d.cols(), a, b) * complementary(m, d.col(a), d.col(b));
+  return volume * sum;
 }
 
 }  // namespace
 
 VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Material>& materials,
-                     const VecX& stress)
+                     const tissue::StressField& field)
 {
   VecX errors = VecX::Zero(mesh.tet_count());
   for (int region = 0; region < static_cast<int>(materials.size()); ++region) {
-    const VecX means = nodal_means(mesh, stress, region);
+    const VecX means = nodal_means(mesh, field, region);
     for (int t = 0; t < mesh.tet_count(); ++t) {
       if (mesh.region[static_cast<std::size_t>(t)] != region) continue;
-      std::array<Six, 4> d;
-      for (std::size_t a = 0; a < 4; ++a) {
-        const int node = mesh.tets[static_cast<std::size_t>(t)][a];
-        d[a] = means.segment<6>(6 * node) - stress.segment<6>(6 * t);
-      }
+      NodalStress d = -stress_at_nodes(mesh, field, t);
+      Eigen::Index a = 0;
+      for (int node : mesh::nodes_of(mesh, t)) d.col(a++) += means.segment<6>(6 * node);
       errors[t] =
           integral(materials[static_cast<std::size_t>(region)], d, mesh::tet_volume(mesh, t));
     }
@@ -53,12 +70,33 @@ VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Material>
   return errors;
 }
 
+VecX wanted_sizes(const mesh::Mesh& mesh, const VecX& errors, double energy, double target)
+{
+  constexpr double finest = 0.25, coarsest = 2.0;
+  const double p = mesh.quadratic() ? 2.0 : 1.0, d = 3.0;
+  double sum = 0.0;
+  for (double square : errors) sum += std::pow(square, d / (2.0 * p + d));
+  const double common = std::pow(target * target * energy / sum, 0.5 / p);
+  VecX logs = VecX::Zero(mesh.node_count()), weight = logs;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const double ratio = common * std::pow(errors[t], -1.0 / (2.0 * p + d));
+    const double volume = mesh::tet_volume(mesh, t);
+    const double size =
+        mesh::mean_edge(mesh::corners(mesh, t)) * std::clamp(ratio, finest, coarsest);
+    for (int node : mesh::nodes_of(mesh, t)) {
+      logs[node] += volume * std::log(size);
+      weight[node] += volume;
+    }
+  }
+  return (logs.array() / weight.array()).exp();
+}
+
 void report_error(const Simulation& simulation, Recorder& recorder, const Log& log,
                   const State& state)
 {
   const Scenario& scenario = simulation.scenario();
   const tissue::StressField found = simulation.tissue().stresses(state.tissue.u);
-  const VecX errors = recovery_errors(scenario.mesh, scenario.tissue.materials, found.stress);
+  const VecX errors = recovery_errors(scenario.mesh, scenario.tissue.materials, found);
   std::vector<double> part(scenario.mesh.volumes.size(), 0.0);
   double energy = 0.0;  // squared energy norm: twice the energy
   for (int t = 0; t < scenario.mesh.tet_count(); ++t) {
@@ -71,6 +109,8 @@ void report_error(const Simulation& simulation, Recorder& recorder, const Log& l
   for (double& one : part) one = all > 0.0 ? one / all : 0.0;
   recorder.table(simulation, "/error_estimate/relative", {relative}, "1");
   recorder.table(simulation, "/error_estimate/part", part, "1");
+  const VecX of_tet = errors.cwiseSqrt();
+  recorder.table(simulation, "/error_estimate/tet", {of_tet.begin(), of_tet.end()}, "J^(1/2)");
   log.note("estimated error: " + core::shown(100.0 * relative) + " % of the energy norm");
   for (std::size_t v = 0; v < part.size(); ++v)
     log.note("  volume " + scenario.mesh.volumes[v] + ": " + core::shown(100.0 * part[v]) +
@@ -78,7 +118,13 @@ void report_error(const Simulation& simulation, Recorder& recorder, const Log& l
   const double target = scenario.output.error_target;
   if (target > 0.0 && relative > target)
     log.note("  for a target of " + core::shown(100.0 * target) + " % edges must be about " +
-             core::shown(relative / target) + " times shorter (linear tets, smooth stress)");
+             core::shown(std::pow(relative / target, scenario.mesh.quadratic() ? 0.5 : 1.0)) +
+             " times shorter (smooth stress)");
+  if (scenario.output.size_field.empty() || !(all > 0.0)) return;
+  const VecX sizes = wanted_sizes(scenario.mesh, errors, energy + all, target);
+  base::on_root(simulation.space().comm(),
+                [&] { io::write_size_field(scenario.output.size_field, scenario.mesh, sizes); });
+  log.note("  sizes for the next mesh: " + scenario.output.size_field + " (gmsh -bgm)");
 }
 
 }  // namespace trocar::driver

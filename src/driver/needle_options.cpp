@@ -8,6 +8,7 @@
 #include "driver/option_source.hpp"
 #include "insertion/clip.hpp"
 #include "insertion/deformed.hpp"
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::driver {
@@ -173,15 +174,14 @@ std::vector<int> planned_nodes(const std::vector<needle::NeedleSettings>& needle
   std::set<int> tube;
   for (const needle::NeedleSettings& settings : needles)
     for (int tet : planned_tets(settings.motion, mesh, locator))
-      for (int node : mesh.tets[static_cast<std::size_t>(tet)]) tube.insert(node);
+      for (int node : mesh::nodes_of(mesh, tet)) tube.insert(node);
   const mesh::NodeToTets around = mesh::node_to_tets(mesh);
   for (int layer = 0; layer <= layers && tube.size() <= most_nodes; ++layer) {
     nodes.assign(tube.begin(), tube.end());
     for (int node : nodes)
       for (int k = around.start[static_cast<std::size_t>(node)];
            k < around.start[static_cast<std::size_t>(node) + 1]; ++k)
-        for (int other :
-             mesh.tets[static_cast<std::size_t>(around.tet[static_cast<std::size_t>(k)])])
+        for (int other : mesh::nodes_of(mesh, around.tet[static_cast<std::size_t>(k)]))
           tube.insert(other);
   }
   return nodes;

@@ -11,16 +11,26 @@ std::vector<OptionSpec> general_options()
       word("mesh", "", "Gmsh file (2.2 or 4.1, ascii or binary)"),
       positive("mesh_scale", "1", "1", "factor on the mesh's coordinates, 1e-3 for millimetres"),
       choice("analysis", "dynamic", {"dynamic", "static", "pv_curve"},
-             "backward Euler in time; equilibrium: one, or a quasi-static path with time_end; or "
+             "steps in time; equilibrium: one, or a quasi-static path with time_end; or "
              "equilibria with a cavity held at one volume after the other"),
       positive("time_step", "0.01", "s", "step length h"),
       not_negative("time_end", "0", "s", "end of the run, 0 = no steps (static: one equilibrium)"),
       choice("time_initial", "unstressed", {"unstressed", "equilibrium"},
              "start at rest without stress, or in balance with gravity and loads"),
+      choice("time_scheme", "backward_euler", {"backward_euler", "bdf2"},
+             "for inertia and damping; bdf2 is of order 2 in smooth motion, friction and flows of "
+             "fluids stay of order 1"),
       count("time_newton_max", "1", 1,
             "linearisations per dynamic step; 1 is the papers' single one, more iterate to 1e-8"),
       vector("gravity", "0,0,0", "m/s^2", "acceleration of gravity"),
-      choice("tissue_model", "corotational", {"linear", "corotational"}, "tissue law"),
+      choice("tissue_model", "corotational", {"linear", "corotational", "neo_hookean"},
+             "tissue law"),
+      choice("tissue_element", "auto", {"auto", "p1", "p1_anp", "p2", "p2_bbar", "p2_anp"},
+             "tets: linear, quadratic (middle nodes are added where the mesh has none); _anp: with "
+             "nodal, _bbar: with element averages of the dilatation; auto: as the mesh is"),
+      choice("tissue_tangent", "rotated", {"rotated", "exact"},
+             "of corotational tissue: with the rotations held, as in the paper, or exact "
+             "(neo_hookean is always exact)"),
       choice("tissue_mass", "consistent", {"consistent", "lumped"}, "tissue mass matrix"),
   };
 }
@@ -201,6 +211,8 @@ void add_output(std::vector<OptionSpec>& t)
            "estimate the discretisation error at the end of the run from the stress, by volume"),
       not_negative("error_target", "0", "1",
                    "energy error to be told how far off the run is; 0 = none"),
+      word("error_size_field", "",
+           "file for the edge lengths of a mesh with that error, for gmsh -bgm"),
       flag("check", "stop after set-up: options, mesh, operator"),
       flag("quiet", "no progress lines"),
   };

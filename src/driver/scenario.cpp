@@ -11,6 +11,7 @@
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
 #include "io/gmsh_reader.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -28,6 +29,7 @@ TimeSettings read_time(Options& options)
   time.step = options.real("time_step");
   time.end = options.real("time_end");
   time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
+  time.second_order = options.text("time_scheme") == "bdf2";
   time.newton_max = options.integer("time_newton_max");
   time.direction_max = options.integer("constraint_direction_max");
   return time;
@@ -48,11 +50,24 @@ std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh&
   return materials;
 }
 
+/// Gives the mesh the order of the elements asked for; returns how these take their dilatation.
+tissue::Dilatation shape_elements(const std::string& element, mesh::Mesh& mesh)
+{
+  if (element[0] == 'p') element[1] == '1' ? mesh::make_linear(mesh) : mesh::make_quadratic(mesh);
+  if (element.ends_with("_anp")) return tissue::Dilatation::nodal;
+  if (element.ends_with("_bbar")) return tissue::Dilatation::element;
+  return tissue::Dilatation::pointwise;
+}
+
 tissue::TissueSettings read_tissue(Options& options, const mesh::Mesh& mesh, const base::Comm& comm)
 {
   tissue::TissueSettings settings;
-  settings.model = options.text("tissue_model") == "linear" ? tissue::Model::linear
-                                                            : tissue::Model::corotational;
+  const std::map<std::string, tissue::Model> models{{"linear", tissue::Model::linear},
+                                                    {"corotational", tissue::Model::corotational},
+                                                    {"neo_hookean", tissue::Model::neo_hookean}};
+  settings.model = models.at(options.text("tissue_model"));
+  settings.tangent =
+      options.text("tissue_tangent") == "exact" ? tissue::Tangent::exact : tissue::Tangent::rotated;
   settings.mass =
       options.text("tissue_mass") == "lumped" ? tissue::Mass::lumped : tissue::Mass::consistent;
   settings.materials = read_materials(options, mesh);
@@ -160,6 +175,10 @@ OutputSettings read_output(Options& options)
   output.quiet = options.flag("quiet");
   output.energy = options.flag("output_energy");
   output.error_target = options.real("error_target");
+  output.size_field = options.text("error_size_field");
+  if (!output.size_field.empty() && !(output.error_target > 0.0))
+    throw core::option_error(
+        "option -error_size_field: sizes are for a target of the error; give -error_target");
   output.error_estimate = options.flag("error_estimate") || output.error_target > 0.0;
   output.displacement = false;
   const std::map<std::string, bool*> fields{{"displacement", &output.displacement},
@@ -205,7 +224,8 @@ void refuse_dashpots_without_time(const Scenario& scenario)
 void add_warnings(Scenario& scenario)
 {
   for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
-    if (scenario.tissue.materials[i].poisson > 0.45)
+    if (scenario.tissue.materials[i].poisson > 0.45 && !scenario.mesh.quadratic() &&
+        scenario.tissue.dilatation == tissue::Dilatation::pointwise)
       scenario.warnings.push_back("volume '" + scenario.mesh.volumes[i] +
                                   "': linear tets lock above a Poisson's ratio of about 0.4; "
                                   "displacements are too small and pressures wrong");
@@ -225,7 +245,10 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");
   scenario.mesh =
       with_cavities_hollow(options, io::read_gmsh(file, options.real("mesh_scale"), comm));
+  const tissue::Dilatation dilatation =
+      shape_elements(options.text("tissue_element"), scenario.mesh);
   scenario.tissue = read_tissue(options, scenario.mesh, comm);
+  scenario.tissue.dilatation = dilatation;
   scenario.insertion = read_insertion(options, scenario.mesh);
   refuse_dashpots_without_time(scenario);
   read_compliance(options, scenario);

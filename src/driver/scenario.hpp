@@ -23,8 +23,9 @@ struct TimeSettings
   double step = 0.01;  ///< h [s]
   double end = 0.0;    ///< T [s]
   bool start_in_equilibrium = false;
-  int newton_max = 1;     ///< linearisations per dynamic step
-  int direction_max = 1;  ///< updates of the constraint directions per linearisation
+  bool second_order = false;  ///< BDF2 instead of backward Euler
+  int newton_max = 1;         ///< linearisations per dynamic step
+  int direction_max = 1;      ///< updates of the constraint directions per linearisation
 };
 
 /// A P-V curve: equilibria with a cavity held at volumes between two parts of that of the mesh.
@@ -58,6 +59,7 @@ struct OutputSettings
   bool energy = false;  ///< keep the energy account
   bool error_estimate = false;
   double error_target = 0.0;  ///< of the energy norm, 0: none
+  std::string size_field;     ///< file for the sizes of the next mesh; empty: none
   bool stale_error = false;   ///< solve stale steps exactly as well
   bool quiet = false;
 };

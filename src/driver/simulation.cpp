@@ -18,7 +18,8 @@ constexpr int most_load_steps = 64;
 
 Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
     : scenario_(scenario),
-      space_(scenario.mesh, mesh::partition_nodes(scenario.mesh, comm), comm),
+      space_(scenario.mesh, mesh::partition_nodes(scenario.mesh, comm), comm,
+             tissue::rings(scenario.tissue.dilatation)),
       tissue_(scenario.mesh, space_, scenario.tissue, ledger_)
 {
   if (scenario.time.analysis != Analysis::dynamic || scenario.time.start_in_equilibrium)
@@ -81,8 +82,11 @@ StepResult Simulation::equilibrium(const State& old, const core::TimeStep& now)
   return result;
 }
 
-StepResult Simulation::step(const State& old, const core::TimeStep& now)
+StepResult Simulation::step(const State& old, const core::TimeStep& step)
 {
+  core::TimeStep now = step;
+  State extrapolated;
+  const State& past = past_of(old, now, extrapolated);  // what time derivatives count from
   State next = old;
   next.t = now.t;
   // 1 events, decided before and frozen during the solve
@@ -97,12 +101,14 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
   for (int iteration = 1; iteration <= most; ++iteration) {
     const fem::OwnedField iterate = most > 1 ? next.tissue.u : fem::OwnedField{};
     const double last_residual = residual;
-    const Pass pass = linearised_step(old, now, residual, walls, next, last, report);  // 2 to 5
+    const Pass pass = linearised_step(past, now, residual, walls, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
-    if (most == 1 || balanced(old, next, walls, now, pass, residual)) {
-      accept(old, now, pass, walls, next, report);
-      if (scenario_.output.energy) account(old, now, pass, walls, report, next);
+    if (most == 1 || balanced(past, next, walls, now, pass, residual)) {
+      accept(past, now, pass, walls, next, report);
+      if (scenario_.time.second_order && now.t > 0.0)
+        next.before = Before{now.h, old.tissue, old.needles};
+      if (scenario_.output.energy) account(old, past, now, pass, walls, report, next);
       return {std::move(next), std::move(report), {}};
     }
     if (pass.rows.set.empty() && residual > last_residual) {  // overshoot: half the increment
@@ -119,7 +125,7 @@ StepResult Simulation::step(const State& old, const core::TimeStep& now)
 
 // The step of both papers: every body moves freely, the rows that couple them are solved in one
 // small dense problem, and the bodies are corrected by it.
-Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeStep& now,
+Simulation::Pass Simulation::linearised_step(const State& past, const core::TimeStep& now,
                                              double residual, cavity::Shape& walls, State& next,
                                              core::VecX& last, StepReport& report)
 {
@@ -127,12 +133,12 @@ Simulation::Pass Simulation::linearised_step(const State& old, const core::TimeS
   fem::Load load;
   if (cavities_) load = cavities_->load(next.cavities, walls, now);
   const tissue::FreeMotion tissue =
-      tissue_.free_motion(old.tissue, next.tissue.u, now, load);  // 2 each body alone
+      tissue_.free_motion(past.tissue, next.tissue.u, now, load);  // 2 each body alone
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
   for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
-    pass = constrained_step(old, now, tissue, lag_tolerance(now, residual), walls, next, last,
+    pass = constrained_step(past, now, tissue, lag_tolerance(now, residual), walls, next, last,
                             report);  // 3 to 5
     if (!pass.trouble) walls = walls_of(next);
     if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
@@ -194,11 +200,11 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
   return rows;
 }
 
-bool Simulation::balanced(const State& old, const State& next, const cavity::Shape& walls,
+bool Simulation::balanced(const State& past, const State& next, const cavity::Shape& walls,
                           const core::TimeStep& now, const Pass& pass, double& residual) const
 {
   double scale = 0.0;
-  fem::OwnedField r = tissue_.residual(old.tissue, next.tissue.u, now, scale);
+  fem::OwnedField r = tissue_.residual(past.tissue, next.tissue.u, now, scale);
   const bool pushed = pass.lambda.lambda.size() > 0;
   if (pushed || cavities_) {
     fem::OwnedField forces = all_forces(pass, next, walls, now);
@@ -210,7 +216,7 @@ bool Simulation::balanced(const State& old, const State& next, const cavity::Sha
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
     // are below round-off.
-    const needle::Linearised again = needles_[i].linearise(old.needles[i], next.needles[i], now);
+    const needle::Linearised again = needles_[i].linearise(past.needles[i], next.needles[i], now);
     const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(again.r.size()).eval();
     residual = std::max(residual, needles_[i].relative_increment(again, lever));
   }
@@ -233,12 +239,12 @@ bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const
   return true;
 }
 
-void Simulation::accept(const State& old, const core::TimeStep& now, const Pass& pass,
+void Simulation::accept(const State& past, const core::TimeStep& now, const Pass& pass,
                         const cavity::Shape& walls, State& next, StepReport& report) const
 {
   if (!scenario_.tissue.boundary.displacements.empty())
     report.tools =
-        tissue_.tool_forces(old.tissue, next.tissue.u, now, all_forces(pass, next, walls, now));
+        tissue_.tool_forces(past.tissue, next.tissue.u, now, all_forces(pass, next, walls, now));
   if (cavities_) {
     const cavity::Shape shape = cavities_->exact() ? walls : cavities_->shape(next.tissue.u);
     report.cavities = cavities_->accept(next.cavities, next.tissue.u, shape, now);

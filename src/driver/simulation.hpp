@@ -31,6 +31,14 @@ struct EnergyAccount
   }
 };
 
+/// What BDF2 remembers of the step before.
+struct Before
+{
+  double h = 0.0;  ///< length of the step that led away from it [s]
+  tissue::TissueState tissue;
+  std::vector<needle::NeedleState> needles;
+};
+
 /// All that changes in a run. A value: a rejected step leaves no trace.
 struct State
 {
@@ -39,7 +47,8 @@ struct State
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
   cavity::State cavities;
-  EnergyAccount energy;  ///< kept with -output_energy only
+  std::optional<Before> before;  ///< with -time_scheme bdf2 only
+  EnergyAccount energy;          ///< kept with -output_energy only
 };
 
 /// What one needle did in a step.
@@ -96,7 +105,7 @@ class Simulation
   StepResult initial_state();
 
   /// One step from `old`; the old state is not touched. Collective.
-  StepResult step(const State& old, const core::TimeStep& now);
+  StepResult step(const State& old, const core::TimeStep& step);
 
   /// Static equilibrium at `now.t`, with load steps when one does not do. Collective.
   StepResult equilibrium(const State& old, const core::TimeStep& now);
@@ -146,9 +155,10 @@ class Simulation
     double tolerance = 0.0;                      ///< of an approach, see lag_tolerance
   };
 
-  Pass linearised_step(const State& old, const core::TimeStep& now, double residual,
+  const State& past_of(const State& old, core::TimeStep& now, State& extrapolated) const;
+  Pass linearised_step(const State& past, const core::TimeStep& now, double residual,
                        cavity::Shape& walls, State& next, core::VecX& last, StepReport& report);
-  Pass constrained_step(const State& old, const core::TimeStep& now,
+  Pass constrained_step(const State& past, const core::TimeStep& now,
                         const tissue::FreeMotion& tissue, double tolerance,
                         const cavity::Shape& walls, State& next, core::VecX& last,
                         StepReport& report);
@@ -175,17 +185,17 @@ class Simulation
   void get_compliance(Pass& pass, StepReport& report);
   std::optional<std::string> solve_constraints(const core::VecX& free, const core::VecX& start,
                                                Pass& pass, StepReport& report);
-  void correct(const State& old, const core::TimeStep& now,
+  void correct(const State& past, const core::TimeStep& now,
                const std::vector<needle::Linearised>& needles, const Pass& pass, State& next,
                StepReport& report);
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
   tissue::Push push_of(const Pass& pass) const;
   double lag_tolerance(const core::TimeStep& now, double residual) const;
-  bool balanced(const State& old, const State& next, const cavity::Shape& walls,
+  bool balanced(const State& past, const State& next, const cavity::Shape& walls,
                 const core::TimeStep& now, const Pass& pass, double& residual) const;
-  void accept(const State& old, const core::TimeStep& now, const Pass& pass,
+  void accept(const State& past, const core::TimeStep& now, const Pass& pass,
               const cavity::Shape& walls, State& next, StepReport& report) const;
-  void account(const State& old, const core::TimeStep& now, const Pass& pass,
+  void account(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
                const cavity::Shape& walls, const StepReport& report, State& next) const;
 
   const Scenario& scenario_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::driver {
 namespace {
 
@@ -31,14 +33,28 @@ Vec3 principal_values(const Six& s)
   return eigen.eigenvalues().reverse();
 }
 
-VecX nodal_means(const mesh::Mesh& mesh, const VecX& stress, int region)
+NodalStress stress_at_nodes(const mesh::Mesh& mesh, const tissue::StressField& field, int tet)
+{
+  if (!mesh.quadratic()) return field.stress.segment<6>(6 * tet).replicate<1, 4>();
+  NodalStress stress(6, 10);
+  stress.leftCols<4>() = field.corner.segment<24>(24 * tet).reshaped(6, 4);
+  for (std::size_t k = 0; k < 6; ++k)
+    stress.col(static_cast<Eigen::Index>(4 + k)) =
+        0.5 * (stress.col(static_cast<Eigen::Index>(mesh::tet_edges[k][0])) +
+               stress.col(static_cast<Eigen::Index>(mesh::tet_edges[k][1])));
+  return stress;
+}
+
+VecX nodal_means(const mesh::Mesh& mesh, const tissue::StressField& field, int region)
 {
   VecX sum = VecX::Zero(6 * mesh.node_count()), weight = VecX::Zero(mesh.node_count());
   for (int t = 0; t < mesh.tet_count(); ++t) {
     if (region >= 0 && mesh.region[static_cast<std::size_t>(t)] != region) continue;
     const double volume = mesh::tet_volume(mesh, t);
-    for (int node : mesh.tets[static_cast<std::size_t>(t)]) {
-      sum.segment<6>(6 * node) += volume * stress.segment<6>(6 * t);
+    const NodalStress stress = stress_at_nodes(mesh, field, t);
+    Eigen::Index a = 0;
+    for (int node : mesh::nodes_of(mesh, t)) {
+      sum.segment<6>(6 * node) += volume * stress.col(a++);
       weight[node] += volume;
     }
   }
@@ -68,8 +84,8 @@ std::vector<io::Field> stress_fields(const Simulation& simulation, const State& 
   if (wanted.strain_energy)
     fields.push_back(field("/strain_energy", 0, "J/m^3", found.energy, false));
   if (wanted.nodal_stress)
-    fields.push_back(field("/nodal_stress", 6, "Pa",
-                           nodal_means(simulation.scenario().mesh, found.stress), true));
+    fields.push_back(
+        field("/nodal_stress", 6, "Pa", nodal_means(simulation.scenario().mesh, found), true));
   return fields;
 }
 

@@ -5,45 +5,72 @@
 
 namespace trocar::fem {
 
-BlockPattern::BlockPattern(const Space& space)
+BlockPattern::BlockPattern(const Space& space, const Cliques& cliques)
+    : pairs_per_tet_(pair_count(static_cast<std::size_t>(space.nodes_per_tet())))
 {
   std::vector<std::vector<int>> columns(static_cast<std::size_t>(space.owned()));
-  const auto row_of = [&](int number) {
-    const int row = number - space.first();
-    return row >= 0 && row < space.owned() ? row : -1;
-  };
-  for (const Space::LocalTet& tet : space.tets())
-    for (const auto& [a, b] : block_pairs) {
-      const int na = space.number(tet.nodes[static_cast<std::size_t>(a)]);
-      const int nb = space.number(tet.nodes[static_cast<std::size_t>(b)]);
-      const int row = row_of(std::min(na, nb));
-      if (row >= 0) columns[static_cast<std::size_t>(row)].push_back(std::max(na, nb));
+  const auto couple = [&](std::span<const int> nodes) {
+    for (int a : nodes) {
+      if (a >= space.owned()) continue;
+      for (int b : nodes)
+        if (space.number(b) >= space.number(a))
+          columns[static_cast<std::size_t>(a)].push_back(space.number(b));
     }
-  row_start_.push_back(0);
-  for (auto& row : columns) {
+  };
+  const auto tidy = [](std::vector<int>& row) {
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
+  };
+  for (std::size_t e = 0; e < space.tets(); ++e) couple(space.nodes(e));
+  for (auto& row : columns) tidy(row);
+  for (std::size_t k = 0; k < cliques.size(); ++k) couple(cliques.nodes(k));
+  row_start_.push_back(0);
+  for (auto& row : columns) {
+    if (cliques.size() > 0) tidy(row);
     column_.insert(column_.end(), row.begin(), row.end());
     row_start_.push_back(static_cast<int>(column_.size()));
   }
   std::unordered_map<int, int> local_of;
   for (int local = 0; local < space.local(); ++local) local_of[space.number(local)] = local;
   for (int number : column_) local_column_.push_back(local_of.at(number));
-  for (const Space::LocalTet& tet : space.tets()) {
-    Slots slots{{}, 0};
-    for (std::size_t p = 0; p < 10; ++p) {
-      const int na = space.number(tet.nodes[static_cast<std::size_t>(block_pairs[p][0])]);
-      const int nb = space.number(tet.nodes[static_cast<std::size_t>(block_pairs[p][1])]);
-      const int row = row_of(std::min(na, nb));
-      slots.at[p] = -1;
-      if (na > nb) slots.transposed = static_cast<std::uint16_t>(slots.transposed | (1U << p));
-      if (row < 0) continue;
+  for (std::size_t e = 0; e < space.tets(); ++e) find_slots(space, space.nodes(e), tet_slots_);
+  for (std::size_t k = 0; k < cliques.size(); ++k) {
+    find_slots(space, cliques.nodes(k), clique_slots_);
+    clique_start_.push_back(clique_slots_.size());
+  }
+}
+
+void BlockPattern::find_slots(const Space& space, std::span<const int> nodes,
+                              std::vector<int>& slots) const
+{
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (std::size_t b = a; b < nodes.size(); ++b) {
+      const int na = space.number(nodes[a]), nb = space.number(nodes[b]);
+      const int row = std::min(na, nb) - space.first();
+      if (row < 0 || row >= space.owned()) {
+        slots.push_back(-1);
+        continue;
+      }
       const auto begin = column_.begin() + row_start_[static_cast<std::size_t>(row)];
       const auto end = column_.begin() + row_start_[static_cast<std::size_t>(row) + 1];
-      slots.at[p] =
-          static_cast<int>(std::lower_bound(begin, end, std::max(na, nb)) - column_.begin());
+      const auto at = std::lower_bound(begin, end, std::max(na, nb));
+      slots.push_back(2 * static_cast<int>(at - column_.begin()) + (na > nb ? 1 : 0));
     }
-    slots_.push_back(slots);
+}
+
+void BlockMatrix::add_rank_one(std::span<const int> slots, const Eigen::Matrix3Xd& b, double scale)
+{
+  std::size_t p = 0;
+  for (Eigen::Index i = 0; i < b.cols(); ++i) {
+    const Vec3 scaled = scale * b.col(i);
+    for (Eigen::Index j = i; j < b.cols(); ++j, ++p) {
+      if (slots[p] < 0) continue;
+      Eigen::Map<core::Mat3> block(&values_[9 * static_cast<std::size_t>(slots[p] >> 1)]);
+      if (slots[p] & 1)
+        block += b.col(j) * scaled.transpose();
+      else
+        block += scaled * b.col(j).transpose();
+    }
   }
 }
 

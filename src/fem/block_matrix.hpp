@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fem/dirichlet.hpp"
@@ -25,20 +25,48 @@ struct SplitBlock
   }
 };
 
-/// Element matrix as the ten 3x3 blocks (a, b), a <= b, of a symmetric tet matrix, in the order
-/// 00 01 02 03 11 12 13 22 23 33; transposed where the slots of the tet say so.
-using ElementBlocks = std::array<SplitBlock, 10>;
+/// The pairs (a, b), a <= b, of n nodes in the order 00 01 … 0n 11 12 …: blocks of a symmetric
+/// matrix.
+constexpr std::size_t pair_count(std::size_t n)
+{
+  return n * (n + 1) / 2;
+}
+template <std::size_t N>
+constexpr std::array<std::array<int, 2>, pair_count(N)> pairs_of()
+{
+  std::array<std::array<int, 2>, pair_count(N)> pairs{};
+  std::size_t p = 0;
+  for (std::size_t a = 0; a < N; ++a)
+    for (std::size_t b = a; b < N; ++b) pairs[p++] = {static_cast<int>(a), static_cast<int>(b)};
+  return pairs;
+}
+template <int N>
+inline constexpr auto block_pairs = pairs_of<static_cast<std::size_t>(N)>();
 
-/// The pairs (a, b) of ElementBlocks.
-inline constexpr std::array<std::array<int, 2>, 10> block_pairs{
-    {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}}};
+/// The 3x3 blocks of a symmetric element matrix of N nodes, by pair; transposed where the slots of
+/// the tet say so.
+template <int N>
+using ElementBlocks = std::array<SplitBlock, pair_count(static_cast<std::size_t>(N))>;
 
-/// Where the element blocks go: upper block CSR of the rows owned here (column >= row, global
-/// node numbers), and for every local tet the slots of its ten blocks. Built once per mesh.
+/// Sets of local nodes that are all coupled with each other, beyond those of the tets.
+struct Cliques
+{
+  std::vector<std::size_t> start{0};
+  std::vector<int> node;
+
+  std::size_t size() const { return start.size() - 1; }
+  std::span<const int> nodes(std::size_t k) const
+  {
+    return {node.data() + start[k], start[k + 1] - start[k]};
+  }
+};
+
+/// Where element blocks go: upper block CSR of the rows owned here (column >= row, global node
+/// numbers), and for the pairs of every local tet and clique their slots. Built once per mesh.
 class BlockPattern
 {
  public:
-  explicit BlockPattern(const Space& space);
+  explicit BlockPattern(const Space& space, const Cliques& cliques = {});
 
   const std::vector<int>& row_start() const { return row_start_; }  ///< owned() + 1
   const std::vector<int>& column() const { return column_; }
@@ -46,16 +74,25 @@ class BlockPattern
   const std::vector<int>& local_column() const { return local_column_; }
   std::size_t block_count() const { return column_.size(); }
 
-  struct Slots
+  /// Twice the index of a pair's block, and 1 when it is stored transposed; -1 when its row is
+  /// owned elsewhere.
+  std::span<const int> slots(std::size_t local_tet) const
   {
-    std::array<int, 10> at;    ///< index of the block, -1 when its row is owned elsewhere
-    std::uint16_t transposed;  ///< bit p: block p is stored transposed
-  };
-  const Slots& slots(std::size_t local_tet) const { return slots_[local_tet]; }
+    return {&tet_slots_[pairs_per_tet_ * local_tet], pairs_per_tet_};
+  }
+  std::span<const int> clique_slots(std::size_t clique) const
+  {
+    return {clique_slots_.data() + clique_start_[clique],
+            clique_start_[clique + 1] - clique_start_[clique]};
+  }
 
  private:
+  void find_slots(const Space& space, std::span<const int> nodes, std::vector<int>& slots) const;
+
   std::vector<int> row_start_, column_, local_column_;
-  std::vector<Slots> slots_;
+  std::size_t pairs_per_tet_;
+  std::vector<int> tet_slots_, clique_slots_;
+  std::vector<std::size_t> clique_start_{0};
 };
 
 /// Values on a BlockPattern. Blocks are column-major, as PETSc's SBAIJ wants them.
@@ -69,16 +106,20 @@ class BlockMatrix
 
   void set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
-  void add(std::size_t local_tet, const ElementBlocks& blocks)
+  /// Adds the blocks of a tet to the slots of its pairs.
+  template <std::size_t P>
+  void add(std::span<const int> slots, const std::array<SplitBlock, P>& blocks)
   {
-    const BlockPattern::Slots& slots = pattern_->slots(local_tet);
-    for (std::size_t p = 0; p < 10; ++p) {
-      if (slots.at[p] < 0) continue;
-      double* target = &values_[9 * static_cast<std::size_t>(slots.at[p])];
+    for (std::size_t p = 0; p < P; ++p) {
+      if (slots[p] < 0) continue;
+      double* target = &values_[9 * static_cast<std::size_t>(slots[p] >> 1)];
       Eigen::Map<Eigen::Array<double, 8, 1>>(target) += blocks[p].head;
       target[8] += blocks[p].last;
     }
   }
+
+  /// Adds scale b bᵀ for nodal vectors b (3, nodes of the clique) to the slots of its pairs.
+  void add_rank_one(std::span<const int> slots, const Eigen::Matrix3Xd& b, double scale);
 
   /// Zeroes rows and columns of fixed dofs; keeps their diagonal entry, so that the scale of the
   /// matrix does not depend on the supports.

@@ -1,17 +1,41 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
-#include "mesh/mesh.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::fem {
 
-/// Constant gradients of the four linear shape functions of a tet, and its volume.
-struct TetShape
+/// Shape gradients of a tet with N nodes (4 or 10) at an integration point, and the volume that
+/// point stands for.
+template <int N>
+struct PointShape
 {
-  Eigen::Matrix<double, 3, 4> gradient;  ///< column a = grad N_a [1/m]
-  double volume;                         ///< [m³]
+  Eigen::Matrix<double, 3, N> gradient;  ///< column a = grad N_a [1/m]
+  double volume;                         ///< weight times Jacobian [m³]
 };
+
+/// Linear tets: the gradients are constant, one point does.
+using TetShape = PointShape<4>;
+
+/// Integration points of the stiffness: exact for straight tets.
+template <int N>
+inline constexpr int points_per_tet = N == 4 ? 1 : 4;
+
+/// Values of the four linear shape functions at these points, one point per column.
+template <int N>
+Eigen::Matrix<double, 4, points_per_tet<N>> corner_weights()
+{
+  if constexpr (N == 4) {
+    return Eigen::Vector4d::Constant(0.25);
+  } else {
+    // Degree 2 (Hammer and Stroud 1956).
+    const double own = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;
+    const double other = (5.0 - std::sqrt(5.0)) / 20.0;
+    return Eigen::Matrix4d::Constant(other) + (own - other) * Eigen::Matrix4d::Identity();
+  }
+}
 
 inline TetShape tet_shape(const std::array<core::Vec3, 4>& corner)
 {
@@ -22,6 +46,33 @@ inline TetShape tet_shape(const std::array<core::Vec3, 4>& corner)
   shape.gradient.rightCols<3>() = D.inverse().transpose();
   shape.gradient.col(0) = -shape.gradient.rightCols<3>().rowwise().sum();
   return shape;
+}
+
+/// The quadratic tet with these node positions at barycentric coordinates `at`; `weight` is the
+/// point's part of the reference volume.
+inline PointShape<10> quadratic_point(const Eigen::Matrix<double, 3, 10>& x,
+                                      const Eigen::Vector4d& at, double weight)
+{
+  const Eigen::Matrix<double, 10, 4> by = mesh::quadratic_derivatives(at);
+  const Eigen::Matrix<double, 10, 3> free = by.rightCols<3>().colwise() - by.col(0);
+  const core::Mat3 J = x * free;
+  return {J.inverse().transpose() * free.transpose(), weight * J.determinant() / 6.0};
+}
+
+/// All integration points of a tet.
+template <int N>
+std::array<PointShape<N>, points_per_tet<N>> point_shapes(const mesh::Mesh& mesh, int tet)
+{
+  if constexpr (N == 4) {
+    return {tet_shape(mesh::corners(mesh, tet))};
+  } else {
+    const Eigen::Matrix<double, 3, 10> x = mesh::positions(mesh, tet);
+    const Eigen::Matrix4d at = corner_weights<10>();
+    std::array<PointShape<10>, 4> shapes;
+    for (int q = 0; q < 4; ++q)
+      shapes[static_cast<std::size_t>(q)] = quadratic_point(x, at.col(q), 0.25);
+    return shapes;
+  }
 }
 
 }  // namespace trocar::fem

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/petsc.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::fem {
 namespace {
@@ -18,12 +19,13 @@ std::vector<int> exclusive_sum(const std::vector<int>& counts)
 
 }  // namespace
 
-Space::Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm)
-    : comm_(comm)
+Space::Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm,
+             int rings)
+    : comm_(comm), nodes_per_tet_(mesh.nodes_per_tet())
 {
   number_nodes(node_owner);
-  collect_local_tets(mesh, node_owner);
-  plan_exchange(mesh, node_owner);
+  collect_local_tets(mesh, node_owner, rings);
+  plan_exchange(node_owner);
 }
 
 void Space::number_nodes(const std::vector<int>& owner)
@@ -44,58 +46,53 @@ void Space::number_nodes(const std::vector<int>& owner)
   for (int& start : starts_) start *= 3;
 }
 
-void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner)
+void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int rings)
 {
   const int me = comm_.rank();
-  file_node_.assign(file_order_.begin() + first_, file_order_.begin() + first_ + owned_);
-  std::vector<int> ghosts;
-  for (const mesh::Tet& tet : mesh.tets) {
-    if (std::none_of(tet.begin(), tet.end(), [&](int n) { return owner[index(n)] == me; }))
-      continue;
-    for (int node : tet)
-      if (owner[index(node)] != me) ghosts.push_back(node);
+  std::vector<char> near(owner.size(), 0);  // nodes of the tets so far, those owned here before any
+  for (std::size_t node = 0; node < owner.size(); ++node) near[node] = owner[node] == me;
+  for (int ring = 0; ring < rings; ++ring) {
+    const std::vector<char> inner = near;
+    file_tet_.clear();
+    for (int t = 0; t < mesh.tet_count(); ++t) {
+      const mesh::TetNodes nodes = mesh::nodes_of(mesh, t);
+      if (std::none_of(nodes.begin(), nodes.end(), [&](int n) { return inner[index(n)]; }))
+        continue;
+      file_tet_.push_back(t);
+      for (int node : nodes) near[index(node)] = 1;
+    }
   }
+  file_node_.assign(file_order_.begin() + first_, file_order_.begin() + first_ + owned_);
   // Ghosts by global number, hence by owner: each rank's values arrive as one contiguous run.
-  std::sort(ghosts.begin(), ghosts.end(),
-            [&](int a, int b) { return number_[index(a)] < number_[index(b)]; });
-  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
-  file_node_.insert(file_node_.end(), ghosts.begin(), ghosts.end());
+  for (int node : file_order_)
+    if (near[index(node)] && owner[index(node)] != me) file_node_.push_back(node);
   std::vector<int> local_of(owner.size(), -1);
   for (int local = 0; local < static_cast<int>(file_node_.size()); ++local)
     local_of[index(file_node_[index(local)])] = local;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    const mesh::Tet& tet = mesh.tets[index(t)];
-    if (std::none_of(tet.begin(), tet.end(), [&](int n) { return owner[index(n)] == me; }))
-      continue;
-    LocalTet local{t, {}};
-    for (std::size_t a = 0; a < 4; ++a) local.nodes[a] = local_of[index(tet[a])];
-    tets_.push_back(local);
-  }
+  for (int t : file_tet_)
+    for (int node : mesh::nodes_of(mesh, t)) tet_node_.push_back(local_of[index(node)]);
 }
 
-void Space::plan_exchange(const mesh::Mesh& mesh, const std::vector<int>& owner)
+void Space::plan_exchange(const std::vector<int>& owner)
 {
+  std::vector<int> wanted;  // global numbers of the ghosts, by owner
   receive_count_.assign(index(comm_.size()), 0);
-  for (int local = owned_; local < this->local(); ++local)
-    receive_count_[index(owner[index(file_node_[index(local)])])] += 3;
-  receive_start_ = exclusive_sum(receive_count_);
-
-  // The mesh is known everywhere, so who needs which of my nodes needs no message.
-  std::vector<std::vector<int>> wanted(index(comm_.size()));
-  for (const mesh::Tet& tet : mesh.tets)
-    for (int mine : tet) {
-      if (owner[index(mine)] != comm_.rank()) continue;
-      for (int other : tet)
-        if (owner[index(other)] != comm_.rank())
-          wanted[index(owner[index(other)])].push_back(number_[index(mine)] - first_);
-    }
-  for (auto& nodes : wanted) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    send_nodes_.insert(send_nodes_.end(), nodes.begin(), nodes.end());
-    send_count_.push_back(3 * static_cast<int>(nodes.size()));
+  for (int local = owned_; local < this->local(); ++local) {
+    ++receive_count_[index(owner[index(file_node_[index(local)])])];
+    wanted.push_back(number(local));
   }
+  receive_start_ = exclusive_sum(receive_count_);
+  send_count_.assign(index(comm_.size()), 0);
+  TROCAR_MPI(
+      MPI_Alltoall(receive_count_.data(), 1, MPI_INT, send_count_.data(), 1, MPI_INT, comm_.get()));
   send_start_ = exclusive_sum(send_count_);
+  send_nodes_.resize(index(send_start_.back() + send_count_.back()));
+  TROCAR_MPI(MPI_Alltoallv(wanted.data(), receive_count_.data(), receive_start_.data(), MPI_INT,
+                           send_nodes_.data(), send_count_.data(), send_start_.data(), MPI_INT,
+                           comm_.get()));
+  for (int& node : send_nodes_) node -= first_;
+  for (auto* counts : {&receive_count_, &receive_start_, &send_count_, &send_start_})
+    for (int& count : *counts) count *= 3;  // from nodes to dofs
 }
 
 int Space::owned_local(int file_node) const

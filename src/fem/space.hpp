@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <span>
 #include <vector>
 
 #include "base/comm.hpp"
@@ -39,13 +39,16 @@ struct GlobalField
   auto node(int file_node) const { return value.segment<3>(3 * file_node); }
 };
 
-/// The P1 dof map: three dofs per node; each rank owns the nodes the partition gives it, numbered
-/// contiguously by rank and in file order within a rank. A rank's local tets are all tets that
-/// touch a node it owns, so that it can assemble its own rows without communication.
+/// The dof map of linear or quadratic tets: three dofs per node; each rank owns the nodes the
+/// partition gives it, numbered contiguously by rank and in file order within a rank. A rank's
+/// local tets are all tets that touch a node it owns, so that it can assemble its own rows without
+/// communication; with two `rings` also those that touch a node of these, which elements that share
+/// their dilatation need.
 class Space
 {
  public:
-  Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm);
+  Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm,
+        int rings = 1);
 
   const base::Comm& comm() const { return comm_; }
   int owned() const { return owned_; }                               ///< nodes owned here
@@ -63,12 +66,15 @@ class Space
   /// Local number of a file node owned here, or -1.
   int owned_local(int file_node) const;
 
-  struct LocalTet
+  int nodes_per_tet() const { return nodes_per_tet_; }
+  std::size_t tets() const { return file_tet_.size(); }  ///< local tets, in file order
+  int file_tet(std::size_t local_tet) const { return file_tet_[local_tet]; }
+  /// Local nodes of a local tet, `nodes_per_tet`, as `mesh::TetNodes` has them.
+  std::span<const int> nodes(std::size_t local_tet) const
   {
-    int file_tet;
-    std::array<int, 4> nodes;  ///< local
-  };
-  const std::vector<LocalTet>& tets() const { return tets_; }
+    const auto count = index(nodes_per_tet_);
+    return {&tet_node_[count * local_tet], count};
+  }
 
   OwnedField zero() const { return {VecX::Zero(owned_dofs())}; }
   GhostedField with_ghosts(const OwnedField& field) const;  ///< collective
@@ -84,8 +90,8 @@ class Space
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   void number_nodes(const std::vector<int>& owner);
-  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner);
-  void plan_exchange(const mesh::Mesh& mesh, const std::vector<int>& owner);
+  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int rings);
+  void plan_exchange(const std::vector<int>& owner);
 
   base::Comm comm_;
   int owned_ = 0;
@@ -93,7 +99,8 @@ class Space
   std::vector<int> number_;      ///< global number by file node
   std::vector<int> file_order_;  ///< file node by global number
   std::vector<int> file_node_;   ///< file node by local node
-  std::vector<LocalTet> tets_;
+  int nodes_per_tet_;
+  std::vector<int> file_tet_, tet_node_;
   std::vector<int> counts_, starts_;          ///< owned dofs and first dof of every rank
   std::vector<int> send_nodes_;               ///< local owned nodes, by receiving rank
   std::vector<int> send_count_, send_start_;  ///< in dofs, by rank

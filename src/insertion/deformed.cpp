@@ -1,8 +1,10 @@
 #include "insertion/deformed.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "insertion/clip.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::insertion {
 namespace {
@@ -28,10 +30,15 @@ Vec3 Deformed::position(const constraint::Anchor& anchor) const
 
 Vec3 Deformed::place(const Vec3& X, int tet) const
 {
-  const Eigen::Vector4d weight = mesh::barycentric(mesh::corners(*mesh_, tet), X);
-  const auto corner = corners_now(tet);
-  Vec3 x = Vec3::Zero();
-  for (std::size_t a = 0; a < 4; ++a) x += weight[static_cast<Eigen::Index>(a)] * corner[a];
+  const Eigen::Vector4d at = mesh::local_coordinates(mesh::positions(*mesh_, tet), X);
+  return positions_now(tet) * mesh::node_weights(*mesh_, at);
+}
+
+mesh::TetPositions Deformed::positions_now(int tet) const
+{
+  mesh::TetPositions x = mesh::positions(*mesh_, tet);
+  Eigen::Index a = 0;
+  for (int node : mesh::nodes_of(*mesh_, tet)) x.col(a++) += u_->node(node);
   return x;
 }
 
@@ -51,23 +58,44 @@ std::vector<int> Deformed::candidates(const Vec3& low, const Vec3& high) const
 
 Vec3 Deformed::pull_back(int tet, const Vec3& x) const
 {
-  const Eigen::Vector4d weight = mesh::barycentric(corners_now(tet), x);
-  const auto reference = mesh::corners(*mesh_, tet);
-  Vec3 X = Vec3::Zero();
-  for (std::size_t a = 0; a < 4; ++a) X += weight[static_cast<Eigen::Index>(a)] * reference[a];
-  return X;
+  const Eigen::Vector4d at = mesh::local_coordinates(positions_now(tet), x);
+  return mesh::positions(*mesh_, tet) * mesh::node_weights(*mesh_, at);
 }
 
 std::optional<Vec3> Deformed::reference_place(const Vec3& x, const Vec3& guess) const
 {
   const auto search = [&](const std::vector<int>& tets) -> std::optional<Vec3> {
     for (int tet : tets)
-      if (mesh::barycentric(corners_now(tet), x).minCoeff() >= inside) return pull_back(tet, x);
+      if (mesh::local_coordinates(positions_now(tet), x).minCoeff() >= inside)
+        return pull_back(tet, x);
     return std::nullopt;
   };
   const Vec3 near = Vec3::Constant(1e-9);
   if (auto found = search(locator_->in_box(guess - near, guess + near))) return found;
   return search(candidates(x, x));
+}
+
+/// Where the segment P Q goes through the face of a quadratic tet by which it goes through its
+/// corners' tet at `t`: the zero of that coordinate along it, by the secant.
+double Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t) const
+{
+  const mesh::TetPositions x = positions_now(tet);
+  Eigen::Index face = 0;
+  mesh::barycentric(corners_now(tet), P + t * (Q - P)).cwiseAbs().minCoeff(&face);
+  const auto beyond = [&](double s) -> double {
+    return mesh::local_coordinates(x, P + s * (Q - P))[face];
+  };
+  constexpr int most = 10;
+  double before = t, after = t + 1e-3;
+  double at_before = beyond(before), at_after = beyond(after);
+  for (int k = 0; k < most && std::abs(at_before) > 1e-12 && at_after != at_before; ++k) {
+    const double next = before - at_before * (after - before) / (at_after - at_before);
+    after = before;
+    at_after = at_before;
+    before = next;
+    at_before = beyond(before);
+  }
+  return before;
 }
 
 Vec3 Deformed::reference_place_continued(const Vec3& x, int tet) const
@@ -103,6 +131,10 @@ std::optional<Vec3> Deformed::entry(const Vec3& P, const Vec3& Q) const
     }
   }
   if (!first) return std::nullopt;
+  if (mesh_->quadratic() && first->low > 0.0) {
+    const double t = through_curved_face(first->tet, P, Q, first->low);
+    return pull_back(first->tet, P + std::max(t, 0.0) * (Q - P));
+  }
   return pull_back(first->tet, P + std::max(first->low, 0.0) * (Q - P));
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "insertion/clip.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::insertion {
 namespace {
@@ -83,24 +84,43 @@ void add_pieces(Path& path, const std::vector<Passage>& passages,
 
 void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
 {
-  const mesh::Tet& nodes = mesh.tets[static_cast<std::size_t>(tet)];
+  const mesh::TetNodes nodes = mesh::nodes_of(mesh, tet);
   Site site{arc, tet, {{nodes.begin(), nodes.end()}, {}}};
-  Eigen::Vector4d weight = mesh::barycentric(mesh::corners(mesh, tet), X);
+  Eigen::Vector4d at = mesh::local_coordinates(mesh::positions(mesh, tet), X);
   for (int a = 0; a < 4; ++a)
-    if (weight[a] < relative_tolerance) weight[a] = 0.0;  // on a face: the opposite node is free
-  site.anchor.weight = weight / weight.sum();
+    if (at[a] < relative_tolerance) at[a] = 0.0;  // on a face: the nodes off it are free
+  site.anchor.weight = mesh::node_weights(mesh, at / at.sum());
   path.sites.push_back(site);
+}
+
+/// Where sites may stand: crossings, and in quadratic tets the middles of the pieces, on [0, 1].
+struct Candidate
+{
+  double t;
+  int tet;
+  double tolerance;
+};
+
+std::vector<Candidate> candidates(const mesh::Mesh& mesh, const std::vector<Passage>& passages,
+                                  const std::vector<Crossing>& crossings)
+{
+  std::vector<Candidate> all;
+  for (const Crossing& c : crossings)
+    all.push_back({c.t, lowest_tet_at(passages, c.t, 1.0), c.tolerance});
+  if (!mesh.quadratic()) return all;
+  for (const Passage& p : passages) {
+    const double middle = 0.5 * (p.low + p.high);
+    if (middle > 0.0 && middle <= 1.0) all.push_back({middle, p.tet, p.tolerance});
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+  return all;
 }
 
 }  // namespace
 
 double local_edge(const mesh::Mesh& mesh, int tet)
 {
-  const auto p = mesh::corners(mesh, tet);
-  double sum = 0.0;
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t b = a + 1; b < 4; ++b) sum += (p[b] - p[a]).norm();
-  return sum / 6.0;
+  return (mesh.quadratic() ? 0.5 : 1.0) * mesh::mean_edge(mesh::corners(mesh, tet));
 }
 
 double arc_tolerance(const mesh::Mesh& mesh, int tet)
@@ -128,15 +148,18 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
 
   for (const Crossing& c : crossings) {
     const double arc = begin + c.t * length;
-    if (!path.crossings.empty() && arc - path.crossings.back() <= c.tolerance * length) continue;
-    path.crossings.push_back(arc);
-    if (settings.placement != Placement::crossings) continue;
-    const int tet = lowest_tet_at(tets, c.t, 1.0);
-    const double shortest = settings.merge * local_edge(mesh, tet);
+    if (path.crossings.empty() || arc - path.crossings.back() > c.tolerance * length)
+      path.crossings.push_back(arc);
+  }
+  for (const Candidate& c : candidates(mesh, tets, crossings)) {
+    if (settings.placement != Placement::crossings) break;
+    const double arc = begin + c.t * length;
     // The tolerance keeps an exact tie from being decided by round-off.
-    if (!path.sites.empty() && arc - path.sites.back().arc < shortest * (1.0 - relative_tolerance))
-      continue;
-    add_site(path, mesh, tet, arc, P + c.t * (X - P));
+    const double shortest =
+        std::max(settings.merge * local_edge(mesh, c.tet) * (1.0 - relative_tolerance),
+                 c.tolerance * length);
+    if (path.sites.empty() || arc - path.sites.back().arc > shortest)
+      add_site(path, mesh, c.tet, arc, P + c.t * (X - P));
   }
   if (settings.placement != Placement::spacing) return;
   const double d = settings.spacing;

@@ -77,7 +77,7 @@ int last_tet(const Path& path);
 /// Part of the local edge below which two places are one.
 inline constexpr double relative_tolerance = 1e-6;
 
-/// Mean edge of a tet [m]: the measure of everything "local".
+/// Mean edge of a tet [m], of a quadratic one half of it: the measure of everything "local".
 double local_edge(const mesh::Mesh& mesh, int tet);
 
 /// Arc tolerance below which two places are one [m].

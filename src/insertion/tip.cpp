@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::insertion {
 namespace {
 
@@ -41,9 +43,10 @@ constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& loca
 {
   std::map<int, double> weight;  // by node
   const auto add = [&](int in, const Vec3& place) {
-    const Eigen::Vector4d share = mesh::barycentric(mesh::corners(mesh, in), place);
-    for (std::size_t a = 0; a < 4; ++a)
-      weight[mesh.tets[static_cast<std::size_t>(in)][a]] += share[static_cast<Eigen::Index>(a)];
+    const mesh::NodeWeights share =
+        mesh::node_weights(mesh, mesh::local_coordinates(mesh::positions(mesh, in), place));
+    Eigen::Index a = 0;
+    for (int node : mesh::nodes_of(mesh, in)) weight[node] += share[a++];
   };
   const core::Mat3 frame = disc ? core::frame_along(*disc) : core::Mat3::Identity();
   for (const Vec3& s : half_samples(disc != nullptr)) {

@@ -11,13 +11,20 @@
 #include <sstream>
 
 #include "core/failure.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::io {
 namespace {
 
-constexpr int triangle_type = 2;
-constexpr int tet_type = 4;
+// Gmsh's element types, and which nodes in its order are ours.
 constexpr int point_type = 15;
+struct Order
+{
+  int triangle_type, tet_type;
+  std::size_t triangle_nodes, tet_nodes;
+};
+constexpr Order linear{2, 4, 3, 4}, quadratic{9, 11, 6, 10};
+constexpr std::array<std::size_t, 6> middles_in_gmsh{4, 5, 6, 7, 9, 8};
 
 /// The Gmsh library between initialize and finalize, silent and ignorant of our command line.
 class GmshSession
@@ -66,7 +73,7 @@ std::vector<Group> physical_groups(int dim)
   return groups;
 }
 
-/// Tags and corner tags of all elements of one type in a group, corners per element consecutive.
+/// Tags and node tags of all elements of one type in a group, nodes per element consecutive.
 /// Throws Failure (65) for an element of another type in a volume group.
 void elements_of(const std::string& file, const Group& group, int type,
                  std::vector<std::size_t>& tags, std::vector<std::size_t>& corners)
@@ -84,32 +91,42 @@ void elements_of(const std::string& file, const Group& group, int type,
       } else if (!element_tags[k].empty() && group.dim == 3) {
         throw core::data_error(file + ": physical volume '" + group.name + "' holds element " +
                                std::to_string(element_tags[k].front()) +
-                               " that is no linear tetrahedron (Gmsh type " +
-                               std::to_string(types[k]) + ")");
+                               " that is no tetrahedron of the mesh's order (Gmsh type " +
+                               std::to_string(types[k]) + "; linear are 4, quadratic 11)");
       }
     }
   }
 }
 
+/// The order of the mesh's tets.
+Order order_of_tets()
+{
+  std::vector<int> types;
+  gmsh::model::mesh::getElementTypes(types, 3);
+  const bool curved = std::find(types.begin(), types.end(), quadratic.tet_type) != types.end();
+  return curved ? quadratic : linear;
+}
+
 struct RawTet
 {
   std::size_t tag;
-  std::array<std::size_t, 4> corner;
+  std::vector<std::size_t> node;  ///< in Gmsh's order
   int region;
 };
 
-std::vector<RawTet> read_tets(mesh::Mesh& mesh)
+std::vector<RawTet> read_tets(mesh::Mesh& mesh, const Order& order)
 {
   std::vector<RawTet> tets;
   for (const Group& group : physical_groups(3)) {
-    std::vector<std::size_t> tags, corners;
-    elements_of(mesh.file, group, tet_type, tags, corners);
+    std::vector<std::size_t> tags, nodes;
+    elements_of(mesh.file, group, order.tet_type, tags, nodes);
     const int region = static_cast<int>(mesh.volumes.size());
     mesh.volumes.push_back(group.name);
-    for (std::size_t i = 0; i < tags.size(); ++i)
-      tets.push_back({tags[i],
-                      {corners[4 * i], corners[4 * i + 1], corners[4 * i + 2], corners[4 * i + 3]},
-                      region});
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      const auto first = nodes.begin() + static_cast<std::ptrdiff_t>(order.tet_nodes * i);
+      tets.push_back(
+          {tags[i], {first, first + static_cast<std::ptrdiff_t>(order.tet_nodes)}, region});
+    }
   }
   if (mesh.volumes.empty())
     throw core::data_error(mesh.file + ": no physical volume (is it a Gmsh mesh with tetrahedra?)");
@@ -130,7 +147,7 @@ using RowOfTag = std::map<std::size_t, int>;
 RowOfTag number_nodes(mesh::Mesh& mesh, const std::vector<RawTet>& tets, double scale)
 {
   std::set<std::size_t> used;
-  for (const RawTet& tet : tets) used.insert(tet.corner.begin(), tet.corner.end());
+  for (const RawTet& tet : tets) used.insert(tet.node.begin(), tet.node.end());
   RowOfTag row_of;
   for (std::size_t tag : used) {
     row_of.emplace(tag, static_cast<int>(row_of.size()));
@@ -149,17 +166,17 @@ RowOfTag number_nodes(mesh::Mesh& mesh, const std::vector<RawTet>& tets, double 
   return row_of;
 }
 
-void read_surfaces(mesh::Mesh& mesh, const RowOfTag& row_of)
+void read_surfaces(mesh::Mesh& mesh, const RowOfTag& row_of, const Order& order)
 {
   for (const Group& group : physical_groups(2)) {
     std::vector<std::size_t> tags, corners;
-    elements_of(mesh.file, group, triangle_type, tags, corners);
+    elements_of(mesh.file, group, order.triangle_type, tags, corners);
     mesh::SurfaceGroup surface{group.name, {}};
     for (std::size_t i = 0; i < tags.size(); ++i) {
       mesh::Face face;
       bool known = true;
       for (std::size_t a = 0; a < 3; ++a) {
-        const auto row = row_of.find(corners[3 * i + a]);
+        const auto row = row_of.find(corners[order.triangle_nodes * i + a]);
         known = known && row != row_of.end();
         if (known) face[a] = row->second;
       }
@@ -200,21 +217,28 @@ void read_on_root(mesh::Mesh& mesh, double scale)
   // Gmsh 4.8 throws std::string, which no handler of std::exception sees.
   try {
     gmsh::open(mesh.file);
-    const std::vector<RawTet> tets = read_tets(mesh);
+    const Order order = order_of_tets();
+    const std::vector<RawTet> tets = read_tets(mesh, order);
     const RowOfTag row_of = number_nodes(mesh, tets, scale);
     for (const RawTet& tet : tets) {
       mesh::Tet corners;
-      for (std::size_t a = 0; a < 4; ++a) corners[a] = row_of.at(tet.corner[a]);
+      for (std::size_t a = 0; a < 4; ++a) corners[a] = row_of.at(tet.node[a]);
       mesh.tets.push_back(corners);
+      if (tet.node.size() > 4) {
+        mesh::Middles& middles = mesh.middles.emplace_back();
+        for (std::size_t k = 0; k < 6; ++k) middles[k] = row_of.at(tet.node[middles_in_gmsh[k]]);
+      }
       mesh.region.push_back(tet.region);
       mesh.elem_tag.push_back(static_cast<long long>(tet.tag));
     }
-    read_surfaces(mesh, row_of);
+    mesh.index_middles();
+    read_surfaces(mesh, row_of, order);
     read_points(mesh, row_of);
   } catch (const std::string& message) {
     throw core::data_error(mesh.file + ": Gmsh cannot read it: " + message);
   }
   mesh::validate(mesh);
+  mesh::check_surface_edges(mesh);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/failure.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::io {
 namespace {
@@ -64,7 +65,8 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Proven
       run_(base::H5File::create(folder + "/run.h5")),
       series_(series),
       nodes_(mesh.x.size()),
-      tets_(mesh.tets.size())
+      tets_(mesh.tets.size()),
+      nodes_per_tet_(mesh.nodes_per_tet())
 {
   run_.attribute("/", "schema", std::string("trocar-1"));
   write_mesh(mesh);
@@ -84,9 +86,10 @@ void Results::write_mesh(const mesh::Mesh& mesh)
   std::vector<double> x;
   for (const auto& p : mesh.x) x.insert(x.end(), p.data(), p.data() + 3);
   std::vector<std::int64_t> tets;
-  for (const auto& tet : mesh.tets) tets.insert(tets.end(), tet.begin(), tet.end());
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    for (int node : mesh::nodes_of(mesh, t)) tets.push_back(node);
   run_.write("/mesh/coordinates", x, 3, "m");
-  run_.write("/mesh/tets", tets, 4, "1");
+  run_.write("/mesh/tets", tets, static_cast<std::size_t>(nodes_per_tet_), "1");
   run_.write("/mesh/region", std::vector<std::int64_t>(mesh.region.begin(), mesh.region.end()), 0,
              "1");
   run_.write("/mesh/node_tag",
@@ -144,8 +147,10 @@ void Results::write_xdmf() const
   const std::string nodes = std::to_string(nodes_), tets = std::to_string(tets_);
   for (const Frame& frame : frames_) {
     x << "   <Grid Name=\"step_" << frame.step << "\">\n    <Time Value=\"" << frame.time
-      << "\"/>\n    <Topology TopologyType=\"Tetrahedron\" NumberOfElements=\"" << tets << "\">";
-    item(tets + " 4", "Int", "run.h5:/mesh/tets");
+      << "\"/>\n    <Topology TopologyType=\""
+      << (nodes_per_tet_ == 10 ? "Tetrahedron_10" : "Tetrahedron") << "\" NumberOfElements=\""
+      << tets << "\">";
+    item(tets + " " + std::to_string(nodes_per_tet_), "Int", "run.h5:/mesh/tets");
     x << "</Topology>\n    <Geometry GeometryType=\"XYZ\">";
     item(nodes + " 3", "Float", "run.h5:/mesh/coordinates");
     x << "</Geometry>\n    <Attribute Name=\"region\" Center=\"Cell\">";

@@ -72,6 +72,7 @@ class Results
   base::H5File run_;
   std::vector<Series> series_;
   std::size_t nodes_, tets_;
+  int nodes_per_tet_;
   std::vector<Frame> frames_;
 };
 

@@ -132,6 +132,17 @@ double integral(const ClosedSurface& surface, const VecX& x, const Kernel& kerne
 
 }  // namespace
 
+VecX face_shares(const MatX& x)
+{
+  const FaceRule& rule = rule_of(static_cast<int>(x.cols()));
+  VecX shares = VecX::Zero(x.cols());
+  for (Eigen::Index q = 0; q < rule.weight.size(); ++q) {
+    const Vec3 t1 = x * rule.N1.row(q).transpose(), t2 = x * rule.N2.row(q).transpose();
+    shares += rule.weight[q] * t1.cross(t2).norm() * rule.N.row(q).transpose();
+  }
+  return shares;
+}
+
 double volume(const ClosedSurface& surface, const VecX& x)
 {
   return integral(surface, x, [](const Point& p) { return p.place.dot(p.normal()); }) / 3.0;

@@ -22,6 +22,10 @@ struct ClosedSurface
   std::size_t faces() const { return nodes.size() / static_cast<std::size_t>(face_nodes); }
 };
 
+/// ∫ N_a dA of the shape functions of one face with these node positions (3, 3 or 6) [m²]: shares
+/// of a uniform load; exact for flat faces.
+VecX face_shares(const MatX& x);
+
 /// Volume V(x), a homogeneous cubic [m³] (paper eqs. 12, 13 by the divergence theorem).
 double volume(const ClosedSurface& surface, const VecX& x);
 /// g = ∂V/∂x [m²]: the consistent nodal share of the area normals; g·x = 3V, Σg = 0.

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/words.hpp"
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::mesh {
@@ -37,7 +38,8 @@ Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
   number.assign(mesh.x.size(), -1);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (mesh.region[t] != volume)
-      for (int node : mesh.tets[t]) number[static_cast<std::size_t>(node)] = 0;
+      for (int node : nodes_of(mesh, static_cast<int>(t)))
+        number[static_cast<std::size_t>(node)] = 0;
   for (std::size_t i = 0; i < mesh.x.size(); ++i) {
     if (number[i] < 0) continue;
     number[i] = rest.node_count();
@@ -49,9 +51,15 @@ Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
     Tet tet = mesh.tets[t];
     for (int& node : tet) node = number[static_cast<std::size_t>(node)];
     rest.tets.push_back(tet);
+    if (mesh.quadratic()) {
+      Middles middles = mesh.middles[t];
+      for (int& node : middles) node = number[static_cast<std::size_t>(node)];
+      rest.middles.push_back(middles);
+    }
     rest.region.push_back(mesh.region[t] - (mesh.region[t] > volume ? 1 : 0));
     rest.elem_tag.push_back(mesh.elem_tag[t]);
   }
+  rest.index_middles();
   return rest;
 }
 

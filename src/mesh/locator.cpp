@@ -5,6 +5,8 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <iterator>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::mesh {
 namespace {
 
@@ -30,9 +32,8 @@ Locator::Locator(const Mesh& mesh) : mesh_(&mesh)
   std::vector<Entry> entries;
   entries.reserve(mesh.tets.size());
   for (int t = 0; t < mesh.tet_count(); ++t) {
-    const auto p = corners(mesh, t);
-    const Vec3 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]).cwiseMin(p[3]);
-    const Vec3 high = p[0].cwiseMax(p[1]).cwiseMax(p[2]).cwiseMax(p[3]);
+    const TetPositions p = positions(mesh, t);
+    const Vec3 low = p.rowwise().minCoeff(), high = p.rowwise().maxCoeff();
     entries.emplace_back(Box(point(low), point(high)), t);
     longest_edge_ = std::max(longest_edge_, (high - low).norm());
   }
@@ -58,7 +59,7 @@ int Locator::tet_at(const Vec3& p, double tolerance) const
 {
   const Vec3 reach = Vec3::Constant(tolerance * longest_edge_);
   for (int tet : in_box(p - reach, p + reach))
-    if (barycentric(corners(*mesh_, tet), p).minCoeff() >= -tolerance) return tet;
+    if (local_coordinates(positions(*mesh_, tet), p).minCoeff() >= -tolerance) return tet;
   return -1;
 }
 

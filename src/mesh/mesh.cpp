@@ -5,12 +5,10 @@
 #include <limits>
 
 #include "core/words.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::mesh {
 namespace {
-
-constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges{
-    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 std::vector<std::string> surface_names(const Mesh& mesh)
 {
@@ -42,6 +40,14 @@ void broadcast_points(std::vector<Vec3>& x, const base::Comm& comm)
 
 }  // namespace
 
+void Mesh::index_middles()
+{
+  middle_of_edge.clear();
+  for (std::size_t t = 0; t < middles.size(); ++t)
+    for (std::size_t k = 0; k < 6; ++k)
+      middle_of_edge[edge_key(tets[t][tet_edges[k][0]], tets[t][tet_edges[k][1]])] = middles[t][k];
+}
+
 double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
   return (b - a).cross(c - a).dot(d - a) / 6.0;
@@ -67,6 +73,13 @@ Eigen::Vector4d barycentric(const std::array<Vec3, 4>& corner, const Vec3& p)
   for (int a = 0; a < 3; ++a) D.col(a) = corner[static_cast<std::size_t>(a) + 1] - corner[0];
   const Vec3 b = D.inverse() * (p - corner[0]);
   return {1.0 - b.sum(), b[0], b[1], b[2]};
+}
+
+double mean_edge(const std::array<Vec3, 4>& corner)
+{
+  double sum = 0.0;
+  for (const auto& [a, b] : tet_edges) sum += (corner[b] - corner[a]).norm();
+  return sum / 6.0;
 }
 
 double longest_edge(const std::array<Vec3, 4>& corner)
@@ -95,7 +108,7 @@ std::vector<int> group_nodes(const Mesh& mesh, const std::string& name)
                            core::did_you_mean(name, names));
   std::vector<int> nodes;
   for (const Face& face : surface_group(mesh, name).faces)
-    nodes.insert(nodes.end(), face.begin(), face.end());
+    for (int node : nodes_of(mesh, face)) nodes.push_back(node);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
@@ -107,6 +120,8 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
   comm.broadcast(mesh.hash);
   broadcast_points(mesh.x, comm);
   broadcast_rows(mesh.tets, comm);
+  broadcast_rows(mesh.middles, comm);
+  mesh.index_middles();
   comm.broadcast(mesh.region);
   comm.broadcast(mesh.volumes);
   comm.broadcast(mesh.node_tag);
@@ -140,10 +155,14 @@ void validate(const Mesh& mesh)
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const double volume = tet_volume(mesh, t);
     const double edge = longest_edge(corners(mesh, t));
-    if (volume > 1e-12 * edge * edge * edge) continue;
-    throw core::data_error(
-        mesh.file + ": tetrahedron " + std::to_string(mesh.elem_tag[static_cast<std::size_t>(t)]) +
-        (volume < 0 ? " is inverted" : " is flat") + " (volume " + core::shown(volume) + " m^3)");
+    const bool folded = volume > 0.0 && smallest_jacobian(positions(mesh, t)) <= 0.0;
+    if (volume > 1e-12 * edge * edge * edge && !folded) continue;
+    throw core::data_error(mesh.file + ": tetrahedron " +
+                           std::to_string(mesh.elem_tag[static_cast<std::size_t>(t)]) +
+                           (volume < 0 ? " is inverted"
+                            : folded   ? " is folded by its curved edges"
+                                       : " is flat") +
+                           " (volume " + core::shown(volume) + " m^3)");
   }
 }
 

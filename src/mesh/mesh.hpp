@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "base/comm.hpp"
@@ -12,12 +15,17 @@ namespace trocar::mesh {
 using core::Vec3;
 using Tet = std::array<int, 4>;
 using Face = std::array<int, 3>;
+using Middles = std::array<int, 6>;
+
+/// Edges of a tet by its corners, in VTK's order of the middle nodes.
+inline constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// A physical group of boundary or interior triangles.
 struct SurfaceGroup
 {
   std::string name;
-  std::vector<Face> faces;
+  std::vector<Face> faces;  ///< by their corners
 };
 
 /// A physical group of points.
@@ -33,10 +41,11 @@ struct PointGroup
 struct Mesh
 {
   std::string file;
-  std::string hash;                  ///< FNV-1a of the file's bytes
-  std::vector<Vec3> x;               ///< [m], reference; row i = i-th smallest Gmsh node tag
-  std::vector<Tet> tets;             ///< positively oriented; row i = i-th smallest tet tag
-  std::vector<int> region;           ///< per tet, index into `volumes`
+  std::string hash;              ///< FNV-1a of the file's bytes
+  std::vector<Vec3> x;           ///< [m], reference; row i = i-th smallest Gmsh node tag
+  std::vector<Tet> tets;         ///< corners, positively oriented; row i = i-th smallest tet tag
+  std::vector<Middles> middles;  ///< nodes on the edges `tet_edges`; empty: linear tets
+  std::vector<int> region;       ///< per tet, index into `volumes`
   std::vector<std::string> volumes;  ///< names of the physical volumes, in tag order
   std::vector<SurfaceGroup> surfaces;
   std::vector<PointGroup> points;
@@ -44,6 +53,21 @@ struct Mesh
 
   int node_count() const { return static_cast<int>(x.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }
+  bool quadratic() const { return !middles.empty(); }
+  int nodes_per_tet() const { return quadratic() ? 10 : 4; }
+  /// Node in the middle of the edge between two corners of a tet. Quadratic meshes only.
+  int middle_of(int a, int b) const { return middle_of_edge.at(edge_key(a, b)); }
+  bool has_edge(int a, int b) const { return middle_of_edge.count(edge_key(a, b)) > 0; }
+  /// Makes these two know `middles`.
+  void index_middles();
+
+ private:
+  static std::uint64_t edge_key(int a, int b)
+  {
+    const auto [low, high] = std::minmax(a, b);
+    return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
+  }
+  std::unordered_map<std::uint64_t, int> middle_of_edge;
 };
 
 /// Signed volume [m³] of the tet with corners a, b, c, d.
@@ -54,6 +78,9 @@ double tet_volume(const Mesh& mesh, int tet);
 Eigen::Vector4d barycentric(const std::array<Vec3, 4>& corner, const Vec3& p);
 
 std::array<Vec3, 4> corners(const Mesh& mesh, int tet);
+
+/// Mean of the six edges [m].
+double mean_edge(const std::array<Vec3, 4>& corner);
 
 /// Longest edge [m].
 double longest_edge(const std::array<Vec3, 4>& corner);

@@ -2,18 +2,21 @@
 
 #include <metis.h>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::mesh {
 namespace {
 
 std::vector<int> metis_node_parts(const Mesh& mesh, int part_count)
 {
   std::vector<idx_t> start{0}, nodes;
-  for (const Tet& tet : mesh.tets) {
-    nodes.insert(nodes.end(), tet.begin(), tet.end());
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const TetNodes of_tet = nodes_of(mesh, t);
+    nodes.insert(nodes.end(), of_tet.begin(), of_tet.end());
     start.push_back(static_cast<idx_t>(nodes.size()));
   }
   idx_t tets = mesh.tet_count(), count = mesh.node_count(), parts = part_count, cut = 0;
-  idx_t shared_nodes = 3;
+  idx_t shared_nodes = mesh.quadratic() ? 6 : 3;  // of two tets with a common face
   std::vector<idx_t> tet_part(mesh.tets.size()), node_part(mesh.x.size());
   const int status =
       METIS_PartMeshDual(&tets, &count, start.data(), nodes.data(), nullptr, nullptr, &shared_nodes,

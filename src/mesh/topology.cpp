@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::mesh {
 namespace {
 
@@ -23,13 +25,13 @@ NodeToTets node_to_tets(const Mesh& mesh)
 {
   NodeToTets map;
   map.start.assign(mesh.x.size() + 1, 0);
-  for (const Tet& tet : mesh.tets)
-    for (int node : tet) ++map.start[static_cast<std::size_t>(node) + 1];
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    for (int node : nodes_of(mesh, t)) ++map.start[static_cast<std::size_t>(node) + 1];
   std::partial_sum(map.start.begin(), map.start.end(), map.start.begin());
   map.tet.resize(static_cast<std::size_t>(map.start.back()));
   std::vector<int> next(map.start.begin(), map.start.end() - 1);
   for (int t = 0; t < mesh.tet_count(); ++t)
-    for (int node : mesh.tets[static_cast<std::size_t>(t)])
+    for (int node : nodes_of(mesh, t))
       map.tet[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = t;
   return map;
 }
@@ -77,9 +79,10 @@ std::vector<int> connected_components(const Mesh& mesh, int& count)
     }
     return node;
   };
-  for (const Tet& tet : mesh.tets)
-    for (std::size_t a = 1; a < 4; ++a)
-      parent[static_cast<std::size_t>(root_of(tet[a]))] = root_of(tet[0]);
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const TetNodes nodes = nodes_of(mesh, t);
+    for (int node : nodes) parent[static_cast<std::size_t>(root_of(node))] = root_of(nodes.node[0]);
+  }
   std::vector<int> component(mesh.x.size());
   std::map<int, int> number;
   for (int i = 0; i < mesh.node_count(); ++i)

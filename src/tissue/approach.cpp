@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "tissue/element.hpp"
 #include "tissue/tissue.hpp"
 
 namespace trocar::tissue {
@@ -52,7 +51,7 @@ void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, c
 /// A d with the present operator.
 OwnedField Tissue::operate(const Approach& approach, const OwnedField& d) const
 {
-  OwnedField product = values_.times(*space_, d);
+  OwnedField product = times(d);
   if (approach.stiffness) product.value -= approach.stiffness(d).value;
   return product;
 }
@@ -82,7 +81,7 @@ FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
 
 void Tissue::give_up(FreeMotion& motion)
 {
-  factor(current_->R);
+  factor(current_->at.R);
   Approach& a = *motion.approach;
   motion.base = a.u;
   motion.pushed = a.lambda;

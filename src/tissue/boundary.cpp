@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "law/volume.hpp"
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::tissue {
@@ -49,13 +51,14 @@ fem::OwnedField traction_load(const mesh::SurfaceGroup& surface, const Vec3& val
 {
   fem::OwnedField load = space.zero();
   for (const mesh::Face& face : surface.faces) {
-    const Vec3& a = mesh.x[static_cast<std::size_t>(face[0])];
-    const Vec3& b = mesh.x[static_cast<std::size_t>(face[1])];
-    const Vec3& c = mesh.x[static_cast<std::size_t>(face[2])];
-    const double area = 0.5 * (b - a).cross(c - a).norm();
-    for (int node : face) {
-      const int local = space.owned_local(node);
-      if (local >= 0) load.node(local) += area / 3.0 * value;
+    const std::vector<int> nodes = mesh::nodes_of(mesh, face);
+    core::MatX x(3, static_cast<Eigen::Index>(nodes.size()));
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      x.col(static_cast<Eigen::Index>(a)) = mesh.x[static_cast<std::size_t>(nodes[a])];
+    const core::VecX share = law::face_shares(x);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const int local = space.owned_local(nodes[a]);
+      if (local >= 0) load.node(local) += share[static_cast<Eigen::Index>(a)] * value;
     }
   }
   return load;

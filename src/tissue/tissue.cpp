@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue/element.hpp"
-
 namespace trocar::tissue {
 Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
                core::Ledger& ledger)
@@ -13,18 +11,12 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
       settings_(std::move(settings)),
       ledger_(&ledger),
       fixed_(dirichlet_set(settings_.boundary, mesh, space)),
-      pattern_(space),
+      elements_(Elements::make(mesh, space, settings_)),
+      pattern_(space, elements_->cliques()),
       values_(pattern_),
       weight_(space.zero())
 {
-  for (const auto& tet : space.tets()) {
-    const Element element{fem::tet_shape(mesh::corners(mesh, tet.file_tet)),
-                          mesh.region[static_cast<std::size_t>(tet.file_tet)]};
-    const Material& m = settings_.materials[static_cast<std::size_t>(element.region)];
-    const Vec3 share = m.density * element.shape.volume / 4.0 * settings_.boundary.gravity;
-    scatter(share.replicate<1, 4>(), tet, weight_);
-    elements_.push_back(element);
-  }
+  elements_->add_weight(settings_.boundary.gravity, weight_);
   double stiffest = 0.0;
   for (const Material& m : settings_.materials) stiffest = std::max(stiffest, m.young);
   smallest_scale_ = 1e-5 * stiffest * std::pow(mesh::quality(mesh).volume, 2.0 / 3.0);
@@ -34,18 +26,17 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
   if (!settings_.boundary.displacements.empty()) find_tools();
 }
 
-void Tissue::assemble(const std::vector<Mat3>& R, double inverse_h)
+void Tissue::assemble(const Configuration& at, double inverse_h)
 {
   values_.set_zero();
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Material& m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
-    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
-    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h;
-    values_.add(e, operator_blocks(m, elements_[e].shape, R[e], scale_k, scale_m,
-                                   settings_.mass == Mass::lumped, pattern_.slots(e).transposed));
-  }
+  elements_->assemble(at, inverse_h, pattern_, values_);
   values_.fix(*space_, fixed_);
   ++ledger_->assemblies;
+}
+
+bool Tissue::configure(const fem::GhostedField& u, Configuration& at) const
+{
+  return space_->comm().all(elements_->configure(u, at));
 }
 
 void Tissue::analyse()
@@ -63,7 +54,7 @@ void Tissue::analyse()
   current_ = &operators_.back();
 }
 
-void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
+void Tissue::use_operator(const Configuration& at, const TimeStep& step)
 {
   const double inverse_h = step.inverse();
   const bool linear = settings_.model == Model::linear;
@@ -72,7 +63,7 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
   });
   if (known != operators_.end()) {
     current_ = &*known;
-    const bool same = current_->inverse_h == inverse_h && (linear || current_->R == R);
+    const bool same = current_->inverse_h == inverse_h && (linear || current_->at == at);
     if (space_->comm().all(same)) {
       ++current_->uses;
       if (!current_->older) current_->sweeps += current_->last_sweeps = 1.0;
@@ -89,16 +80,16 @@ void Tissue::use_operator(const std::vector<Mat3>& R, const TimeStep& step)
   }
   const bool same_h = current_->inverse_h == inverse_h;
   current_->inverse_h = inverse_h;
-  if (!linear) current_->R = R;
-  assemble(R, inverse_h);
+  if (!linear) current_->at = at;
+  assemble(at, inverse_h);
   const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && current_->uses > 0 &&
                        current_->solver->can_turn();
   if (may_lag && space_->comm().all(same_h) && !factor_worn()) {
-    current_->solver->turn(turned_nodes(R, current_->R_factor));
+    current_->solver->turn(turned_nodes(at.R, current_->R_factor));
     current_->older = true;
     ++current_->uses;
   } else {
-    factor(R);
+    factor(at.R);
   }
 }
 
@@ -111,70 +102,38 @@ OwnedField Tissue::external(const TimeStep& step) const
   return f;
 }
 
-OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
+OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Configuration& at,
                           const TimeStep& step, double* scale,
                           const std::vector<std::size_t>* elements) const
 {
-  const double inverse_h = step.inverse();
-  const OwnedField rate{(u.value - old.u.value) * inverse_h};
-  const OwnedField acceleration{(rate.value - old.v.value) * inverse_h};
-  const auto u_g = space_->with_ghosts(u);
-  const auto rate_g = space_->with_ghosts(rate);
-  const auto acceleration_g = space_->with_ghosts(acceleration);
-  OwnedField internal = space_->zero(), inertia = space_->zero();
-  const std::size_t count = elements ? elements->size() : elements_.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t e = elements ? (*elements)[k] : k;
-    const auto& tet = space_->tets()[e];
-    const fem::TetShape& shape = elements_[e].shape;
-    const Material& m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
-    const Nodal velocity = nodal_values(rate_g, tet);
-    const Mat3 F = Mat3::Identity() + nodal_gradient(shape, nodal_values(u_g, tet));
-    const Mat3 P = stress(m, R[e], F, nodal_gradient(shape, velocity));
-    scatter(shape.volume * P * shape.gradient, tet, internal);
-    if (step.is_static) continue;
-    const Nodal w = nodal_values(acceleration_g, tet) + m.rayleigh_mass * velocity;
-    scatter(mass_times(w, m.density * shape.volume, settings_.mass), tet, inertia);
+  Kinematics motion{space_->with_ghosts(u), {}, {}};
+  if (!step.is_static) {
+    const double inverse_h = step.inverse();
+    const OwnedField rate{(u.value - old.u.value) * inverse_h};
+    motion.v = space_->with_ghosts(rate);
+    motion.a = space_->with_ghosts({(rate.value - old.v.value) * inverse_h});
   }
+  OwnedField internal = space_->zero(), inertia = space_->zero();
+  if (elements)
+    elements_->add_forces_of(*elements, at, motion, internal, inertia);
+  else
+    elements_->add_forces(at, motion, internal, inertia);
   const OwnedField load = external(step);
   if (scale) *scale = space_->norm(load) + space_->norm(internal) + space_->norm(inertia);
   return {load.value - internal.value - inertia.value};
 }
 
-OwnedField Tissue::apply_operator(const OwnedField& d, const std::vector<Mat3>& R,
-                                  double inverse_h) const
-{
-  const auto d_g = space_->with_ghosts(d);
-  OwnedField product = space_->zero();
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const auto& tet = space_->tets()[e];
-    const fem::TetShape& shape = elements_[e].shape;
-    Material m = settings_.materials[static_cast<std::size_t>(elements_[e].region)];
-    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
-    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h;
-    m.rayleigh_stiffness = 0.0;
-    const Nodal w = nodal_values(d_g, tet);
-    // stress() is affine in F; at F = R + grad d it gives the linear part alone.
-    const Mat3 P = stress(m, R[e], R[e] + nodal_gradient(shape, w), Mat3::Zero());
-    scatter(scale_k * shape.volume * P * shape.gradient +
-                mass_times(w, scale_m * m.density * shape.volume, settings_.mass),
-            tet, product);
-  }
-  return product;
-}
-
 FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
                                const TimeStep& step, const fem::Load& more)
 {
-  if (!rotations(space_->with_ghosts(iterate), R_))
+  if (!configure(space_->with_ghosts(iterate), at_))
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
-  use_operator(R_, step);
-  const std::vector<Mat3>& R = R_;
+  use_operator(at_, step);
   // Under loads that follow r is the rest of large forces: below their round-off there is nothing
   // to be balanced.
   constexpr double rest_of_forces = 1e-10;
   double scale = 0.0;
-  OwnedField r = forces(old, iterate, R, step, more.stiffness ? &scale : nullptr);
+  OwnedField r = forces(old, iterate, at_, step, more.stiffness ? &scale : nullptr);
   if (more.stiffness) scale = rest_of_forces * std::max(scale, smallest_scale_);
   if (more.force.value.size() > 0) r.value += more.force.value;
 
@@ -188,7 +147,7 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
             step.load * target.value[3 * local + a] - iterate.value[3 * local + a];
   }
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
-  if (moves) r.value -= apply_operator(prescribed, R, step.inverse()).value;
+  if (moves) r.value -= operate_by_elements(at_, step.inverse(), prescribed).value;
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
   if (current_->older || more.stiffness)
@@ -224,13 +183,7 @@ OwnedField Tissue::finish(const FreeMotion& motion, const solve::Probes& probes,
 bool Tissue::possible(const OwnedField& u) const
 {
   bool good = u.value.allFinite();
-  if (settings_.model == Model::corotational) {
-    const auto u_g = space_->with_ghosts(u);
-    for (std::size_t e = 0; good && e < elements_.size(); ++e) {
-      const Mat3 grad = nodal_gradient(elements_[e].shape, nodal_values(u_g, space_->tets()[e]));
-      good = (Mat3::Identity() + grad).determinant() > 0.0;
-    }
-  }
+  if (settings_.model != Model::linear) good = elements_->upright(space_->with_ghosts(u)) && good;
   return space_->comm().all(good);
 }
 
@@ -251,9 +204,9 @@ solve::HalfSolution Tissue::begin(const OwnedField& forces)
 OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
                             double& scale) const
 {
-  std::vector<Mat3> R;
-  rotations(space_->with_ghosts(u), R);
-  OwnedField r = forces(old, u, R, step, &scale);
+  Configuration at;
+  configure(space_->with_ghosts(u), at);
+  OwnedField r = forces(old, u, at, step, &scale);
   fixed_.clear(r);
   scale = std::max(scale, smallest_scale_);
   return r;
@@ -266,7 +219,9 @@ std::string Tissue::describe_solver() const
 
 void Tissue::prepare(const TimeStep& step)
 {
-  use_operator(std::vector<Mat3>(elements_.size(), Mat3::Identity()), step);
+  Configuration at;
+  configure(space_->with_ghosts(space_->zero()), at);
+  use_operator(at, step);
 }
 
 }  // namespace trocar::tissue

@@ -5,28 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "core/polar.hpp"
 #include "core/time_step.hpp"
 #include "fem/load.hpp"
 #include "mesh/mesh.hpp"
 #include "solve/step_solver.hpp"
 #include "tissue/approach.hpp"
 #include "tissue/boundary.hpp"
-#include "tissue/elastic.hpp"
+#include "tissue/elements.hpp"
 
 namespace trocar::tissue {
 
 using core::TimeStep;
-using fem::OwnedField;
 
-enum class Model { linear, corotational };
-enum class Mass { consistent, lumped };
-
-struct TissueSettings
+struct TissueSettings : ElementSettings
 {
-  Model model = Model::corotational;
-  Mass mass = Mass::consistent;
-  std::vector<Material> materials;  ///< by volume of the mesh
   BoundaryConditions boundary;
   solve::LinearSettings linear;
   solve::Provider provider = solve::Provider::automatic;
@@ -61,13 +53,6 @@ struct Work
   double elastic = 0.0, kinetic = 0.0;
   double supplied = 0.0;  ///< by gravity, tractions and moving supports
   double damped = 0.0;    ///< by Rayleigh damping
-};
-
-/// Elastic stress and energy density of every tet, in file order, equal on every rank.
-struct StressField
-{
-  core::VecX stress;  ///< Cauchy: xx, yy, zz, xy, yz, xz of each (6 · tets) [Pa]
-  core::VecX energy;  ///< per undeformed volume (tets) [J/m³]
 };
 
 /// The deformable bodies: one or more volumes of the mesh in one operator
@@ -140,22 +125,32 @@ class Tissue
   std::vector<Vec3> tool_forces(const TissueState& old, const OwnedField& u, const TimeStep& step,
                                 const OwnedField& more) const;
 
-  /// Only on request: an element loop, and all tets on every rank. Collective.
+  /// In file order, equal on every rank. Only on request: an element loop, and all tets on every
+  /// rank. Collective.
   StressField stresses(const OwnedField& u) const;
 
-  /// Energy account of an accepted step; `push` is Hᵀλ. Only on request: an element loop more.
-  /// Collective.
-  Work work(const TissueState& old, const TissueState& next, const TimeStep& step,
-            const OwnedField& push) const;
+  /// Energy account of an accepted step; `push` is Hᵀλ, and time derivatives count from `past`,
+  /// which is `old` with backward Euler. Only on request: an element loop more. Collective.
+  Work work(const TissueState& old, const TissueState& past, const TissueState& next,
+            const TimeStep& step, const OwnedField& push) const;
 
   /// The compliance that belongs to the operator of the last `free_motion`.
   solve::IsolatedCompliance& compliance() { return current_->solver->compliance(); }
 
-  /// Rotations R_e of the elements at u, identities for linear tissue. False when one is turned
-  /// inside out, on every rank. Collective.
-  bool rotations(const fem::GhostedField& u, std::vector<Mat3>& R) const;
+  /// Where the operator is linearised at u. False when an element is turned inside out, on every
+  /// rank. Collective.
+  bool configure(const fem::GhostedField& u, Configuration& at) const;
   /// Fills the values of the operator. Not collective.
-  void assemble(const std::vector<Mat3>& R, double inverse_h);
+  void assemble(const Configuration& at, double inverse_h);
+
+  /// A d with the matrix assembled last [N]. Collective.
+  OwnedField times(const OwnedField& d) const { return values_.times(*space_, d); }
+  /// The same element by element, supports left out. Collective.
+  OwnedField operate_by_elements(const Configuration& at, double inverse_h,
+                                 const OwnedField& d) const
+  {
+    return elements_->operate(at, inverse_h, space_->with_ghosts(d));
+  }
 
   const fem::Dirichlet& fixed() const { return fixed_; }
   const mesh::Mesh& mesh() const { return *mesh_; }
@@ -170,25 +165,18 @@ class Tissue
   void prepare(const TimeStep& step);
 
  private:
-  struct Element
-  {
-    fem::TetShape shape;
-    int region;
-  };
   struct Operator
   {
     double inverse_h = -1.0;
-    std::vector<Mat3> R;         ///< rotations it was assembled with; empty for linear tissue
-    std::vector<Mat3> R_factor;  ///< and those of its factor
-    bool older = false;          ///< the factor is that of an older operator
-    int uses = 0;                ///< linearisations that the factor has served
+    Configuration at;                        ///< it was assembled with; empty for linear tissue
+    std::vector<Mat3> R_factor;              ///< rotations its factor was made with
+    bool older = false;                      ///< the factor is that of an older operator
+    int uses = 0;                            ///< linearisations that the factor has served
     double sweeps = 0.0, last_sweeps = 0.0;  ///< they took in all, and the last one
     std::unique_ptr<solve::StepSolver> solver;
   };
 
-  void use_operator(const std::vector<Mat3>& R, const TimeStep& step);
-  void deformation_gradients(const fem::GhostedField& u, std::size_t first, std::size_t count,
-                             core::PolarBatch::Matrix& F) const;
+  void use_operator(const Configuration& at, const TimeStep& step);
   void factor(const std::vector<Mat3>& R);
   bool factor_worn() const;
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
@@ -202,25 +190,23 @@ class Tissue
                const Push& push) const;
   void end_approach(FreeMotion& motion, bool convex);
   OwnedField operate(const Approach& approach, const OwnedField& d) const;
-  OwnedField forces(const TissueState& old, const OwnedField& u, const std::vector<Mat3>& R,
+  OwnedField forces(const TissueState& old, const OwnedField& u, const Configuration& at,
                     const TimeStep& step, double* scale,
                     const std::vector<std::size_t>* elements = nullptr) const;
   void find_tools();
   OwnedField external(const TimeStep& step) const;
-  OwnedField apply_operator(const OwnedField& d, const std::vector<Mat3>& R,
-                            double inverse_h) const;
 
   const mesh::Mesh* mesh_;
   const fem::Space* space_;
   TissueSettings settings_;
   core::Ledger* ledger_;
   fem::Dirichlet fixed_;
+  std::unique_ptr<Elements> elements_;
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
-  double smallest_scale_ = 0.0;    ///< 1e-5 E V^(2/3) [N]
-  std::vector<Element> elements_;  ///< by local tet
-  std::vector<Mat3> R_;            ///< rotations of the present linearisation
-  OwnedField weight_;              ///< ρ g V/4 per node [N]
+  double smallest_scale_ = 0.0;  ///< 1e-5 E V^(2/3) [N]
+  Configuration at_;             ///< of the present linearisation
+  OwnedField weight_;            ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Dofs that a prescribed displacement holds: owned dof and which condition.
   std::vector<std::pair<Eigen::Index, std::size_t>> tool_dofs_;

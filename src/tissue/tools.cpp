@@ -1,6 +1,6 @@
 #include <map>
 
-#include "tissue/element.hpp"
+#include "tissue/tissue.hpp"
 
 // Prescribed displacements as tools: plates, clamps, single nodes, and the forces they take.
 namespace trocar::tissue {
@@ -18,8 +18,8 @@ void Tissue::find_tools()
     }
   }
   tool_dofs_.assign(owner.begin(), owner.end());
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (int node : space_->tets()[e].nodes) {
+  for (std::size_t e = 0; e < space_->tets(); ++e)
+    for (int node : space_->nodes(e)) {
       const auto at = owner.lower_bound(3 * node);
       if (at == owner.end() || at->first > 3 * node + 2) continue;
       tool_elements_.push_back(e);
@@ -30,14 +30,9 @@ void Tissue::find_tools()
 std::vector<Vec3> Tissue::tool_forces(const TissueState& old, const OwnedField& u,
                                       const TimeStep& step, const OwnedField& more) const
 {
-  std::vector<Mat3> R(elements_.size(), Mat3::Identity());
-  const auto u_g = space_->with_ghosts(u);
-  for (std::size_t e : tool_elements_)
-    if (settings_.model == Model::corotational)
-      R[e] = core::polar_rotation(
-          Mat3::Identity() +
-          nodal_gradient(elements_[e].shape, nodal_values(u_g, space_->tets()[e])));
-  const OwnedField held = forces(old, u, R, step, nullptr, &tool_elements_);
+  Configuration at;
+  elements_->configure_for(tool_elements_, space_->with_ghosts(u), at);
+  const OwnedField held = forces(old, u, at, step, nullptr, &tool_elements_);
   const std::size_t count = settings_.boundary.displacements.size();
   core::VecX sums = core::VecX::Zero(3 * static_cast<Eigen::Index>(count));
   for (const auto& [dof, tool] : tool_dofs_)

@@ -180,15 +180,15 @@ void time_assembly(const Bench& bench, const test::BlockShape& shape)
       u.node(k) = 0.2 * Vec3(x.z(), 0, -x.x() * x.z() / 0.04);
     }
     const fem::GhostedField u_g = body.space.with_ghosts(u);
-    std::vector<core::Mat3> R;
+    tissue::Configuration at;
     const double seconds = bench.median([&] {
-      if (turns || R.empty()) body.tissue.rotations(u_g, R);
-      body.tissue.assemble(R, 100.0);
+      if (turns || at.R.empty()) body.tissue.configure(u_g, at);
+      body.tissue.assemble(at, 100.0);
     });
     bench.figure(turns ? "assembly_corotational" : "assembly_linear", seconds, "s");
     if (turns) continue;
     const fem::BlockPattern pattern(body.space);
-    const double tets = static_cast<double>(body.space.tets().size());
+    const double tets = static_cast<double>(body.space.tets());
     bench.figure("assembly_bytes",
                  3.0 * 72.0 * static_cast<double>(pattern.block_count()) + tets * (104.0 + 44.0),
                  "B");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::test {
@@ -80,6 +81,9 @@ mesh::Mesh block(const BlockShape& shape)
         }
       }
   add_sides(mesh, shape.size);
+  if (shape.quadratic) mesh::make_quadratic(mesh);
+  if (shape.map)
+    for (core::Vec3& x : mesh.x) x = shape.map(x);
   return mesh;
 }
 

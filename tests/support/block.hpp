@@ -15,6 +15,9 @@ struct BlockShape
   double jitter = 0.0;                   ///< inner nodes moved by up to this part of a cell
   /// Cells left out (a void) by their middle.
   std::function<bool(const core::Vec3&)> hole = [](const core::Vec3&) { return false; };
+  bool quadratic = false;  ///< with a node in the middle of every edge
+  /// Moves every node, middles included: curves the edges of quadratic tets.
+  std::function<core::Vec3(const core::Vec3&)> map{};
 };
 
 /// Box of cells in six tets each; groups as in meshes/structured_beam: volume "beam", surfaces

@@ -1,5 +1,7 @@
 #include "support/body.hpp"
 
+#include "fem/shape.hpp"
+
 namespace trocar::test {
 
 core::MatX dense_operator(const mesh::Mesh& mesh, const tissue::Material& m, double scale_k,

@@ -46,10 +46,10 @@ TEST(Stress, OfAStretchAndARotation)
       EXPECT_LT((field.stress.segment<6>(6 * t) - expected).norm(), 1e-11 * expected.norm());
       EXPECT_NEAR(field.energy[t], 0.5 * (lambda + 2 * mu) * stretch * stretch, 1e-10 * E);
     }
-    const core::VecX means = driver::nodal_means(body.mesh, field.stress);
+    const core::VecX means = driver::nodal_means(body.mesh, field);
     EXPECT_LT((means.head<6>() - expected).norm(), 1e-11 * expected.norm());
     EXPECT_EQ(body.ledger.stress_evaluations, 1);
-    EXPECT_LT(driver::recovery_errors(body.mesh, settings.materials, field.stress).sum(),
+    EXPECT_LT(driver::recovery_errors(body.mesh, settings.materials, field).sum(),
               1e-20 * field.energy.sum());  // nothing to be estimated
   }
 }
@@ -128,10 +128,10 @@ TEST(Stress, LameShellConverges)
       }
     }
     const core::VecX estimate =
-        driver::recovery_errors(scenario.mesh, scenario.tissue.materials, field.stress);
+        driver::recovery_errors(scenario.mesh, scenario.tissue.materials, field);
     effectivity.push_back(std::sqrt(estimate.sum() / true_error));
     of_tets.push_back(std::sqrt(off / all));
-    const core::VecX means = driver::nodal_means(scenario.mesh, field.stress);
+    const core::VecX means = driver::nodal_means(scenario.mesh, field);
     off = all = 0.0;
     for (int i = 0; i < scenario.mesh.node_count(); ++i) {
       const Vec3& x = scenario.mesh.x[static_cast<std::size_t>(i)];

@@ -2,17 +2,26 @@
 
 #include "base/petsc.hpp"
 #include "support/body.hpp"
+#include "tissue/element_blocks.hpp"
 
 namespace trocar {
 namespace {
 
 const test::BlockShape distorted{4, 3, 3, core::Vec3(1.2, 1.0, 0.8), 0.25};
 
-fem::ElementBlocks blocks_of(const test::Body& body, std::size_t e, const core::Mat3& R)
+/// K turned by R plus 1e3 M of a tet; transposed as the slots say.
+template <int N>
+fem::ElementBlocks<N> blocks_of(const mesh::Mesh& mesh, int tet, const core::Mat3& R,
+                                std::span<const int> slots)
 {
-  const auto& tet = body.space.tets()[e];
-  return tissue::operator_blocks({}, fem::tet_shape(mesh::corners(body.mesh, tet.file_tet)), R, 1.0,
-                                 1e3, false, 0);
+  const tissue::Material m;
+  const auto shapes = fem::point_shapes<N>(mesh, tet);
+  std::array<core::Mat3, fem::points_per_tet<N>> turns;
+  turns.fill(R);
+  Eigen::Matrix<double, N, N> mass = Eigen::Matrix<double, N, N>::Constant(0.05);
+  mass.diagonal() *= 2.0;
+  return tissue::operator_blocks<N>(m.lambda(), m.mu(), shapes.data(), turns.data(),
+                                    mesh::tet_volume(mesh, tet) * mass, 1e3 * m.density, slots);
 }
 
 void expect_equal_products(const test::Body& body, const fem::BlockMatrix& direct, Mat A)
@@ -60,9 +69,12 @@ TEST(Space, RanksWithoutTetsAreAllowed)
 }
 
 // Direct scatter against PETSc's own insertion, element by element.
-TEST(BlockMatrix, EqualsMatSetValues)
+template <int N>
+void expect_petsc_inserts_the_same()
 {
-  const test::Body body(distorted);
+  test::BlockShape shape = distorted;
+  shape.quadratic = N == 10;
+  const test::Body body(shape);
   const fem::BlockPattern pattern(body.space);
   fem::BlockMatrix direct(pattern);
   base::MatHandle reference;
@@ -76,17 +88,15 @@ TEST(BlockMatrix, EqualsMatSetValues)
   TROCAR_PETSC(MatSetOption(A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   TROCAR_PETSC(MatSetOption(A, MAT_ROW_ORIENTED, PETSC_FALSE));
   const core::Mat3 R = core::rotation_exp(core::Vec3(0.3, -0.2, 0.9));
-  for (std::size_t e = 0; e < body.space.tets().size(); ++e) {
-    const tissue::Material gel;
-    const fem::TetShape shape =
-        fem::tet_shape(mesh::corners(body.mesh, body.space.tets()[e].file_tet));
-    direct.add(
-        e, tissue::operator_blocks(gel, shape, R, 1.0, 1e3, false, pattern.slots(e).transposed));
-    const auto blocks = blocks_of(body, e, R);
-    for (std::size_t p = 0; p < 10; ++p) {
-      const auto& nodes = body.space.tets()[e].nodes;
-      const int a = nodes[static_cast<std::size_t>(fem::block_pairs[p][0])];
-      const int b = nodes[static_cast<std::size_t>(fem::block_pairs[p][1])];
+  for (std::size_t e = 0; e < body.space.tets(); ++e) {
+    const int tet = body.space.file_tet(e);
+    direct.add(pattern.slots(e), blocks_of<N>(body.mesh, tet, R, pattern.slots(e)));
+    const std::vector<int> plain(pattern.slots(e).size(), 0);
+    const auto blocks = blocks_of<N>(body.mesh, tet, R, plain);
+    for (std::size_t p = 0; p < blocks.size(); ++p) {
+      const auto nodes = body.space.nodes(e);
+      const int a = nodes[static_cast<std::size_t>(fem::block_pairs<N>[p][0])];
+      const int b = nodes[static_cast<std::size_t>(fem::block_pairs<N>[p][1])];
       const PetscInt row = body.space.number(a), column = body.space.number(b);
       const core::Mat3 block = blocks[p].matrix(), transposed = block.transpose();
       // Ranks insert only their own rows, as the program does.
@@ -117,17 +127,22 @@ TEST(BlockMatrix, EqualsMatSetValues)
   expect_equal_products(body, direct, A);
 }
 
+TEST(BlockMatrix, EqualsMatSetValues)
+{
+  expect_petsc_inserts_the_same<4>();
+  expect_petsc_inserts_the_same<10>();
+}
+
 TEST(Element, BlocksEqualTheTextbookStrainMatrix)
 {
   const test::Body body({2, 2, 2, core::Vec3::Ones(), 0.2});
   core::MatX A = core::MatX::Zero(3 * body.mesh.node_count(), 3 * body.mesh.node_count());
   for (int t = 0; t < body.mesh.tet_count(); ++t) {
-    const auto blocks = tissue::operator_blocks({}, fem::tet_shape(mesh::corners(body.mesh, t)),
-                                                core::Mat3::Identity(), 1.0, 1e3, false, 0);
+    const auto blocks = blocks_of<4>(body.mesh, t, core::Mat3::Identity(), std::vector<int>(10, 0));
     const auto& tet = body.mesh.tets[static_cast<std::size_t>(t)];
     for (std::size_t p = 0; p < 10; ++p) {
-      const int a = tet[static_cast<std::size_t>(fem::block_pairs[p][0])];
-      const int b = tet[static_cast<std::size_t>(fem::block_pairs[p][1])];
+      const int a = tet[static_cast<std::size_t>(fem::block_pairs<4>[p][0])];
+      const int b = tet[static_cast<std::size_t>(fem::block_pairs<4>[p][1])];
       A.block<3, 3>(3 * a, 3 * b) += blocks[p].matrix();
       if (a != b) A.block<3, 3>(3 * b, 3 * a) += blocks[p].matrix().transpose();
     }
@@ -136,26 +151,51 @@ TEST(Element, BlocksEqualTheTextbookStrainMatrix)
   EXPECT_LT((A - reference).norm(), 1e-13 * reference.norm());
 }
 
-// A rotated element answers as the unrotated one does in its own axes.
-TEST(Element, StressIsObjectiveAndTheDerivativeOfTheEnergy)
+// First Piola stress of a law in its own terms.
+core::Mat3 stress_of(tissue::Model model, const tissue::Material& m, const core::Mat3& F)
+{
+  const core::Mat3 R =
+      model == tissue::Model::linear ? core::Mat3::Identity() : core::polar_rotation(F);
+  return m.mu() * tissue::energy::shear_gradient(model, R, F) +
+         m.lambda() * tissue::energy::dilatation(model, R, F) *
+             tissue::energy::dilatation_gradient(model, R, F);
+}
+
+double energy_of(tissue::Model model, const tissue::Material& m, const core::Mat3& F)
+{
+  const core::Mat3 R =
+      model == tissue::Model::linear ? core::Mat3::Identity() : core::polar_rotation(F);
+  const double theta = tissue::energy::dilatation(model, R, F);
+  return m.mu() * tissue::energy::shear(model, R, F) + 0.5 * m.lambda() * theta * theta;
+}
+
+// A turned body answers as the unturned one does in its own axes; stress is the derivative of the
+// energy; near F = I every law is Hooke's.
+TEST(Material, StressIsObjectiveAndTheDerivativeOfTheEnergy)
 {
   const tissue::Material m{4000.0, 0.3, 1000.0, 0.0, 0.0};
   const core::Mat3 Q = core::rotation_exp(core::Vec3(1.0, -0.4, 0.3));
   core::Mat3 F;
   F << 1.1, 0.2, 0.0, -0.1, 0.95, 0.05, 0.02, 0.1, 1.2;
-  const core::Mat3 R = core::polar_rotation(F);
-  const core::Mat3 P = tissue::stress(m, R, F, core::Mat3::Zero());
-  EXPECT_LT((tissue::stress(m, Q * R, Q * F, core::Mat3::Zero()) - Q * P).norm(), 1e-10 * P.norm());
-  const auto energy = [&](const core::Mat3& G) {
-    const core::Mat3 e = core::polar_rotation(G).transpose() * G - core::Mat3::Identity();
-    return m.mu() * e.squaredNorm() + 0.5 * m.lambda() * e.trace() * e.trace();
-  };
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      core::Mat3 d = core::Mat3::Zero();
-      d(i, j) = 1e-6;
-      EXPECT_NEAR((energy(F + d) - energy(F - d)) / 2e-6, P(i, j), 1e-6 * P.norm());
+  const core::Mat3 e = 0.5 * (F + F.transpose()) - core::Mat3::Identity();
+  const core::Mat3 hooke = 2.0 * m.mu() * e + m.lambda() * e.trace() * core::Mat3::Identity();
+  for (const auto model :
+       {tissue::Model::linear, tissue::Model::corotational, tissue::Model::neo_hookean}) {
+    const core::Mat3 P = stress_of(model, m, F);
+    if (model != tissue::Model::linear) {
+      EXPECT_LT((stress_of(model, m, Q * F) - Q * P).norm(), 1e-10 * P.norm());
     }
+    const double little = 1e-7;
+    const core::Mat3 near = core::Mat3::Identity() + little * (F - core::Mat3::Identity());
+    EXPECT_LT((stress_of(model, m, near) / little - hooke).norm(), 1e-5 * hooke.norm());
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        core::Mat3 d = core::Mat3::Zero();
+        d(i, j) = 1e-6;
+        EXPECT_NEAR((energy_of(model, m, F + d) - energy_of(model, m, F - d)) / 2e-6, P(i, j),
+                    1e-6 * P.norm());
+      }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#include "tissue/tissue.hpp"
+
+// What is worked out of a state on request: stress and energies.
+namespace trocar::tissue {
+
+StressField Tissue::stresses(const OwnedField& u) const
+{
+  const auto u_g = space_->with_ghosts(u);
+  Configuration at;
+  configure(u_g, at);
+  const StressField mine = elements_->stresses(at, u_g);
+  const Eigen::Index tets = mesh_->tet_count();
+  StressField field{core::VecX::Zero(6 * tets),
+                    core::VecX::Zero(mesh_->quadratic() ? 24 * tets : 0), core::VecX::Zero(tets)};
+  for (std::size_t e = 0; e < space_->tets(); ++e) {
+    if (space_->nodes(e)[0] >= space_->owned()) continue;  // the owner of its first node has it
+    const auto local = static_cast<Eigen::Index>(e);
+    const Eigen::Index tet = space_->file_tet(e);
+    field.stress.segment<6>(6 * tet) = mine.stress.segment<6>(6 * local);
+    field.energy[tet] = mine.energy[local];
+    if (mesh_->quadratic())
+      field.corner.segment<24>(24 * tet) = mine.corner.segment<24>(24 * local);
+  }
+  for (core::VecX* values : {&field.stress, &field.corner, &field.energy})
+    space_->comm().sum(*values);
+  ++ledger_->stress_evaluations;
+  return field;
+}
+
+Work Tissue::work(const TissueState& old, const TissueState& past, const TissueState& next,
+                  const TimeStep& step, const OwnedField& push) const
+{
+  Kinematics motion{space_->with_ghosts(next.u), {}, {}};
+  if (!step.is_static) motion.v = space_->with_ghosts(next.v);
+  Configuration at;
+  configure(motion.u, at);
+  const TetWork mine = elements_->work(at, motion);
+  Work work;
+  work.elastic = space_->comm().sum(mine.elastic);
+  work.kinetic = space_->comm().sum(mine.kinetic);
+  work.damped =
+      space_->comm().sum(step.h * (mine.damping_power_mass + mine.damping_power_stiffness));
+  // Loads, and the supports where they move: they carry what is out of balance on their dofs.
+  const OwnedField moved{next.u.value - old.u.value};
+  OwnedField support{-forces(past, next.u, at, step, nullptr).value - push.value};
+  OwnedField elsewhere = support;
+  fixed_.clear(elsewhere);
+  support.value -= elsewhere.value;
+  work.supplied = space_->dot(external(step), moved) + space_->dot(support, moved);
+  return work;
+}
+
+}  // namespace trocar::tissue

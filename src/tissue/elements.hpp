@@ -1,0 +1,124 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/block_matrix.hpp"
+#include "tissue/material.hpp"
+
+namespace trocar::tissue {
+
+using fem::GhostedField;
+using fem::OwnedField;
+
+enum class Mass { consistent, lumped };
+
+/// Over what the dilatation θ is averaged before it makes pressure. Tets that take it pointwise
+/// lock when they are nearly incompressible. `nodal`: the mean over the tets around every corner
+/// node, each volume of the mesh apart (Bonet and Burton 1998; with quadratic tets Taylor-Hood with
+/// a lumped pressure, eliminated): it couples all nodes around a corner.
+enum class Dilatation { pointwise, element, nodal };
+
+/// Of λ of quadratic tets with nodal dilatation this many μ stay at the points: to lump a pressure
+/// costs an order of convergence where λ is not large, and up to there (ν = 0.4545) nothing locks.
+/// Measured: docs/theory.md.
+inline constexpr double most_at_point = 10.0;
+
+/// Rings of tets that a rank needs around its nodes (see fem::Space).
+inline int rings(Dilatation dilatation)
+{
+  return dilatation == Dilatation::nodal ? 2 : 1;
+}
+
+struct ElementSettings
+{
+  Model model = Model::corotational;
+  Mass mass = Mass::consistent;
+  Dilatation dilatation = Dilatation::pointwise;
+  Tangent tangent = Tangent::rotated;
+  std::vector<Material> materials;  ///< by volume of the mesh
+};
+
+/// Where the tissue is linearised: what the operator depends on, by integration point of the local
+/// tets. A value.
+struct Configuration
+{
+  std::vector<Mat3> R;  ///< rotations; identities for linear tissue
+  std::vector<Mat3> F;  ///< deformation gradients and
+  core::VecX p;         ///< pressures λθ [Pa], where the tangent depends on them
+
+  bool operator==(const Configuration&) const = default;
+};
+
+/// Displacement with velocity and what else inertia acts on, w = a + α v.
+struct Kinematics
+{
+  GhostedField u;  ///< [m]
+  GhostedField v;  ///< [m/s]; empty: at rest
+  GhostedField a;  ///< [m/s²]; empty: no inertia
+};
+
+/// Elastic stress and energy density of tets.
+struct StressField
+{
+  core::VecX stress;  ///< mean Cauchy: xx, yy, zz, xy, yz, xz of each (6 · tets) [Pa]
+  core::VecX corner;  ///< at the four corners, continued linearly from the integration points
+                      ///< (24 · tets) [Pa]; empty for linear tets, where it is constant
+  core::VecX energy;  ///< mean per undeformed volume (tets) [J/m³]
+};
+
+/// Energies of the tets that this rank counts, those whose first node it owns.
+struct TetWork
+{
+  double elastic = 0.0, kinetic = 0.0;                             ///< [J]
+  double damping_power_mass = 0.0, damping_power_stiffness = 0.0;  ///< [W]
+};
+
+/// The sums over the tets of a rank: forces, operator, energies, stress. Linear or quadratic tets,
+/// any model. Borrows mesh and space. Nothing here is collective.
+class Elements
+{
+ public:
+  static std::unique_ptr<Elements> make(const mesh::Mesh& mesh, const fem::Space& space,
+                                        const ElementSettings& settings);
+  virtual ~Elements() = default;
+
+  /// Nodes that a shared dilatation couples, beyond those of the tets.
+  virtual const fem::Cliques& cliques() const = 0;
+
+  /// False when a tet is turned inside out at u, where the model minds.
+  virtual bool upright(const GhostedField& u) const = 0;
+  /// Rotations, and for exact tangents the rest, at u. False when a tet is turned inside out.
+  virtual bool configure(const GhostedField& u, Configuration& at) const = 0;
+  /// As far as the forces of some tets need it.
+  virtual void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
+                             Configuration& at) const = 0;
+
+  /// Adds scale_k K + scale_m M, scale_k = 1 + β/h, scale_m = (1/h + α)/h [N/m].
+  virtual void assemble(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
+                        fem::BlockMatrix& values) const = 0;
+  /// The same operator times d [N], without its matrix and its supports.
+  virtual OwnedField operate(const Configuration& at, double inverse_h,
+                             const GhostedField& d) const = 0;
+
+  /// Adds the forces of stress, stiffness damping, and inertia with mass damping [N].
+  virtual void add_forces(const Configuration& at, const Kinematics& motion, OwnedField& internal,
+                          OwnedField& inertia) const = 0;
+  /// The same into the nodes of some tets only.
+  virtual void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
+                             const Kinematics& motion, OwnedField& internal,
+                             OwnedField& inertia) const = 0;
+
+  virtual TetWork work(const Configuration& at, const Kinematics& motion) const = 0;
+  /// By local tet.
+  virtual StressField stresses(const Configuration& at, const GhostedField& u) const = 0;
+
+  /// Adds ρ V N_a g to the nodes [N].
+  virtual void add_weight(const core::Vec3& gravity, OwnedField& force) const = 0;
+  /// Volume-weighted sum of the turns R R₀ᵀ around every local node [m³].
+  virtual std::vector<Mat3> turns(const std::vector<Mat3>& R,
+                                  const std::vector<Mat3>& R_old) const = 0;
+};
+
+}  // namespace trocar::tissue

@@ -1,0 +1,292 @@
+#include "tissue/elements_of.hpp"
+
+#include <algorithm>
+
+#include "tissue/element_blocks.hpp"
+#include "tissue/element_forces.hpp"
+
+// Geometry, rotations and operator of the tets; their forces are in element_forces.hpp.
+namespace trocar::tissue {
+
+std::unique_ptr<Elements> Elements::make(const mesh::Mesh& mesh, const fem::Space& space,
+                                         const ElementSettings& settings)
+{
+  if (mesh.quadratic()) return std::make_unique<ElementsOf<10>>(mesh, space, settings);
+  return std::make_unique<ElementsOf<4>>(mesh, space, settings);
+}
+
+template <int N>
+ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
+                          const ElementSettings& settings)
+    : space_(&space), settings_(settings)
+{
+  shapes_.reserve(points * space.tets());
+  for (std::size_t e = 0; e < space.tets(); ++e) {
+    double volume = 0.0;
+    for (const auto& shape : fem::point_shapes<N>(mesh, space.file_tet(e))) {
+      shapes_.push_back(shape);
+      volume += shape.volume;
+    }
+    volume_.push_back(volume);
+    region_.push_back(mesh.region[static_cast<std::size_t>(space.file_tet(e))]);
+  }
+  measure_masses(mesh);
+  if (settings_.dilatation != Dilatation::nodal) return;
+  patches_ = corner_patches(space, region_);
+  const auto share = fem::corner_weights<N>();
+  for (std::size_t v = 0; v < patches_->size(); ++v)
+    for (std::size_t k = patches_->start[v]; k < patches_->start[v + 1]; ++k)
+      for (std::size_t q = 0; q < points; ++q)
+        patches_->measure[v] += shapes_[points * patches_->member[k].tet + q].volume *
+                                share(patches_->member[k].corner, static_cast<Eigen::Index>(q));
+  cliques_ = patch_nodes(*patches_, space);
+}
+
+namespace {
+
+/// Σ over Gauss points of f(barycentric coordinates, part of the reference volume): exact to degree
+/// 7 (five Gauss-Legendre points in each of three collapsed coordinates).
+template <class F>
+void integrate_tet(const F& f)
+{
+  constexpr std::array<double, 5> x{-0.9061798459386640, -0.5384693101056831, 0.0,
+                                    0.5384693101056831, 0.9061798459386640};
+  constexpr std::array<double, 5> w{0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                    0.4786286704993665, 0.2369268850561891};
+  for (std::size_t i = 0; i < 5; ++i)
+    for (std::size_t j = 0; j < 5; ++j)
+      for (std::size_t k = 0; k < 5; ++k) {
+        const double a = 0.5 * (1.0 + x[i]), b = 0.5 * (1.0 + x[j]), c = 0.5 * (1.0 + x[k]);
+        const double weight = 6.0 * 0.125 * w[i] * w[j] * w[k] * (1.0 - a) * (1.0 - a) * (1.0 - b);
+        f(Eigen::Vector4d((1.0 - a) * (1.0 - b) * (1.0 - c), a, (1.0 - a) * b,
+                          (1.0 - a) * (1.0 - b) * c),
+          weight);
+      }
+}
+
+}  // namespace
+
+template <int N>
+void ElementsOf<N>::measure_masses(const mesh::Mesh& mesh)
+{
+  straight_mass_.setZero();
+  if constexpr (N == 4) {
+    straight_mass_.setConstant(1.0 / 20.0);
+    straight_mass_.diagonal().setConstant(0.1);
+  } else {
+    integrate_tet([&](const Eigen::Vector4d& at, double weight) {
+      const Eigen::Matrix<double, N, 1> shape = mesh::quadratic_shape(at);
+      straight_mass_ += weight * shape * shape.transpose();
+    });
+    for (std::size_t e = 0; e < tets(); ++e) {
+      const mesh::TetPositions x = mesh::positions(mesh, space_->file_tet(e));
+      if (mesh::is_straight(x)) continue;
+      Scalar& mass = curved_mass_[e];
+      mass.setZero();
+      integrate_tet([&](const Eigen::Vector4d& at, double weight) {
+        const Eigen::Matrix<double, N, 1> shape = mesh::quadratic_shape(at);
+        mass += fem::quadratic_point(x, at, weight).volume * shape * shape.transpose();
+      });
+    }
+  }
+  if (settings_.mass == Mass::consistent) return;
+  // The diagonal in its own proportions (Hinton, Rock and Zienkiewicz 1976): for linear tets V/4.
+  const auto lump = [](Scalar& mass) {
+    const Eigen::Matrix<double, N, 1> diagonal = mass.diagonal();
+    mass = (mass.sum() / diagonal.sum() * diagonal).asDiagonal();
+  };
+  lump(straight_mass_);
+  for (auto& [e, mass] : curved_mass_) lump(mass);
+}
+
+template <int N>
+typename ElementsOf<N>::Scalar ElementsOf<N>::unit_mass(std::size_t e) const
+{
+  if constexpr (N == 10) {
+    const auto curved = curved_mass_.find(e);
+    if (curved != curved_mass_.end()) return curved->second;
+  }
+  return volume_[e] * straight_mass_;
+}
+
+/// F of `count` points, one per lane; the last one fills the rest.
+template <int N>
+void ElementsOf<N>::gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
+                                     core::PolarBatch::Matrix& F) const
+{
+  constexpr int width = core::PolarBatch::width;
+  std::array<core::PolarBatch::Lanes, 3 * N> values, gradients;
+  for (int lane = 0; lane < width; ++lane) {
+    const std::size_t point = first + std::min(static_cast<std::size_t>(lane), count - 1);
+    const double* g = shapes_[point].gradient.data();
+    const auto nodes = space_->nodes(point / points);
+    for (std::size_t a = 0; a < N; ++a) {
+      const double* w = u.value.data() + 3 * nodes[a];
+      for (std::size_t i = 0; i < 3; ++i) {
+        values[3 * a + i][lane] = w[i];
+        gradients[3 * a + i][lane] = g[3 * a + i];
+      }
+    }
+  }
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) {
+      core::PolarBatch::Lanes sum = core::PolarBatch::Lanes::Constant(i == j ? 1.0 : 0.0);
+      for (std::size_t a = 0; a < N; ++a) sum += values[3 * a + i] * gradients[3 * a + j];
+      F[3 * j + i] = sum;
+    }
+}
+
+template <int N>
+bool ElementsOf<N>::upright(const GhostedField& u) const
+{
+  if (settings_.model == Model::linear) return true;
+  for (std::size_t e = 0; e < tets(); ++e) {
+    const Nodal w = nodal(u, e);
+    for (std::size_t q = 0; q < points; ++q)
+      if (!((Mat3::Identity() + gradient(w, points * e + q)).determinant() > 0.0)) return false;
+  }
+  return true;
+}
+
+template <int N>
+bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
+{
+  const std::size_t count = shapes_.size();
+  if (settings_.model == Model::linear) {
+    if (at.R.size() != count) at.R.assign(count, Mat3::Identity());
+    return true;
+  }
+  at.R.resize(count);
+  at.F.resize(exact() ? count : 0);
+  constexpr std::size_t width = core::PolarBatch::width;
+  core::PolarBatch batch;
+  for (std::size_t first = 0; first < count; first += width) {
+    const std::size_t lanes = std::min(width, count - first);
+    gather_gradients(u, first, lanes, batch.matrix());
+    if (!(batch.determinant() > 0.0).all()) {
+      std::fill(at.R.begin() + static_cast<std::ptrdiff_t>(first), at.R.end(), Mat3::Identity());
+      return false;
+    }
+    for (std::size_t lane = 0; exact() && lane < lanes; ++lane)
+      at.F[first + lane] = batch.get(static_cast<int>(lane));
+    batch.rotate();
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      at.R[first + lane] = batch.get(static_cast<int>(lane));
+  }
+  if (exact()) at.p = pressures(at, {u, {}, {}});
+  return true;
+}
+
+template <int N>
+void ElementsOf<N>::configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
+                                  Configuration& at) const
+{
+  if (averaged() || exact()) {
+    configure(u, at);
+    return;
+  }
+  at.R.assign(shapes_.size(), Mat3::Identity());
+  if (settings_.model == Model::linear) return;
+  for (std::size_t e : tets)
+    for (std::size_t point = points * e; point < points * (e + 1); ++point)
+      at.R[point] = core::polar_rotation(Mat3::Identity() + gradient(nodal(u, e), point));
+}
+
+/// ∂P/∂F : G at a point, without what a shared dilatation adds [Pa].
+template <int N>
+Mat3 ElementsOf<N>::increment(const Configuration& at, std::size_t e, std::size_t point,
+                              const Mat3& G) const
+{
+  const Material& m = material(e);
+  const Mat3& R = at.R[point];
+  const Mat3& F = exact() ? at.F[point] : R;
+  Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, F, G);
+  if (exact())
+    P += at.p[static_cast<Eigen::Index>(point)] *
+         energy::dilatation_increment(settings_.model, settings_.tangent, R, F, G);
+  const double lambda = lambda_at_point(m);
+  if (lambda == 0.0) return P;
+  const Mat3 by = dilatation_gradient(at, point);
+  return P + lambda * by.cwiseProduct(G).sum() * by;
+}
+
+template <int N>
+void ElementsOf<N>::assemble(const Configuration& at, double inverse_h,
+                             const fem::BlockPattern& pattern, fem::BlockMatrix& values) const
+{
+  for (std::size_t e = 0; e < tets(); ++e) {
+    const Material& m = material(e);
+    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
+    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h * m.density;
+    const auto slots = pattern.slots(e);
+    const fem::PointShape<N>* shape = &shapes_[points * e];
+    const Mat3* R = &at.R[points * e];
+    const double lambda = exact() ? 0.0 : scale_k * lambda_at_point(m);
+    fem::ElementBlocks<N> blocks = operator_blocks<N>(lambda, exact() ? 0.0 : scale_k * m.mu(),
+                                                      shape, R, unit_mass(e), scale_m, slots);
+    for (std::size_t q = 0; exact() && q < points; ++q)
+      add_tangent<N>(
+          shape[q], scale_k, [&](const Mat3& G) { return increment(at, e, points * e + q, G); },
+          slots, blocks);
+    if (settings_.dilatation == Dilatation::element) {
+      Nodal sum = Nodal::Zero();
+      for (std::size_t q = 0; q < points; ++q) {
+        sum += shape[q].volume * dilatation_gradient(at, points * e + q) * shape[q].gradient;
+      }
+      add_rank_one<N>(sum, scale_k * lambda_of_mean(m) / volume_[e], slots, blocks);
+    }
+    values.add(slots, blocks);
+  }
+  if (patches_) add_patches(at, inverse_h, pattern, values);
+}
+
+template <int N>
+void ElementsOf<N>::add_patches(const Configuration& at, double inverse_h,
+                                const fem::BlockPattern& pattern, fem::BlockMatrix& values) const
+{
+  const auto share = fem::corner_weights<N>();
+  std::vector<int> place(static_cast<std::size_t>(space_->local()));
+  Eigen::Matrix3Xd b;
+  for (std::size_t v = 0; v < patches_->size(); ++v) {
+    const auto nodes = cliques_.nodes(v);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      place[static_cast<std::size_t>(nodes[i])] = static_cast<int>(i);
+    b.setZero(3, static_cast<Eigen::Index>(nodes.size()));
+    for (std::size_t k = patches_->start[v]; k < patches_->start[v + 1]; ++k) {
+      const Patches::Member& member = patches_->member[k];
+      const auto of_tet = space_->nodes(member.tet);
+      for (std::size_t q = 0; q < points; ++q) {
+        const std::size_t point = points * member.tet + q;
+        const Nodal part = share(member.corner, static_cast<Eigen::Index>(q)) *
+                           shapes_[point].volume * dilatation_gradient(at, point) *
+                           shapes_[point].gradient;
+        for (std::size_t a = 0; a < N; ++a)
+          b.col(place[static_cast<std::size_t>(of_tet[a])]) +=
+              part.col(static_cast<Eigen::Index>(a));
+      }
+    }
+    const Material& m = settings_.materials[static_cast<std::size_t>(patches_->region[v])];
+    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
+    values.add_rank_one(pattern.clique_slots(v), b,
+                        scale_k * lambda_of_mean(m) / patches_->measure[v]);
+  }
+}
+
+template <int N>
+std::vector<Mat3> ElementsOf<N>::turns(const std::vector<Mat3>& R,
+                                       const std::vector<Mat3>& R_old) const
+{
+  std::vector<Mat3> sum(static_cast<std::size_t>(space_->local()), Mat3::Zero());
+  for (std::size_t e = 0; e < tets(); ++e) {
+    Mat3 turn = Mat3::Zero();
+    for (std::size_t point = points * e; point < points * (e + 1); ++point)
+      turn += shapes_[point].volume * R[point] * R_old[point].transpose();
+    for (int node : space_->nodes(e)) sum[static_cast<std::size_t>(node)] += turn;
+  }
+  return sum;
+}
+
+template class ElementsOf<4>;
+template class ElementsOf<10>;
+
+}  // namespace trocar::tissue

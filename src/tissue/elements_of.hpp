@@ -1,0 +1,104 @@
+#pragma once
+
+#include <optional>
+#include <unordered_map>
+
+#include "core/polar.hpp"
+#include "fem/shape.hpp"
+#include "tissue/elements.hpp"
+#include "tissue/patches.hpp"
+
+namespace trocar::tissue {
+
+/// Tets with N nodes, 4 or 10.
+template <int N>
+class ElementsOf final : public Elements
+{
+ public:
+  ElementsOf(const mesh::Mesh& mesh, const fem::Space& space, const ElementSettings& settings);
+
+  const fem::Cliques& cliques() const override { return cliques_; }
+  bool upright(const GhostedField& u) const override;
+  bool configure(const GhostedField& u, Configuration& at) const override;
+  void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
+                     Configuration& at) const override;
+  void assemble(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
+                fem::BlockMatrix& values) const override;
+  OwnedField operate(const Configuration& at, double inverse_h,
+                     const GhostedField& d) const override;
+  void add_forces(const Configuration& at, const Kinematics& motion, OwnedField& internal,
+                  OwnedField& inertia) const override;
+  void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
+                     const Kinematics& motion, OwnedField& internal,
+                     OwnedField& inertia) const override;
+  TetWork work(const Configuration& at, const Kinematics& motion) const override;
+  StressField stresses(const Configuration& at, const GhostedField& u) const override;
+  void add_weight(const core::Vec3& gravity, OwnedField& force) const override;
+  std::vector<Mat3> turns(const std::vector<Mat3>& R,
+                          const std::vector<Mat3>& R_old) const override;
+
+ private:
+  static constexpr std::size_t points = static_cast<std::size_t>(fem::points_per_tet<N>);
+  using Nodal = Eigen::Matrix<double, 3, N>;
+  using Scalar = Eigen::Matrix<double, N, N>;
+
+  std::size_t tets() const { return region_.size(); }
+  const Material& material(std::size_t e) const
+  {
+    return settings_.materials[static_cast<std::size_t>(region_[e])];
+  }
+  bool averaged() const { return settings_.dilatation != Dilatation::pointwise; }
+  /// The part of λ that multiplies the dilatation at the point itself [Pa].
+  double lambda_at_point(const Material& m) const
+  {
+    if (!averaged()) return m.lambda();
+    const bool split = N == 10 && settings_.dilatation == Dilatation::nodal;
+    return split ? std::min(m.lambda(), most_at_point * m.mu()) : 0.0;
+  }
+  double lambda_of_mean(const Material& m) const { return m.lambda() - lambda_at_point(m); }
+  bool exact() const
+  {
+    return settings_.model == Model::neo_hookean ||
+           (settings_.model == Model::corotational && settings_.tangent == Tangent::exact);
+  }
+
+  Nodal nodal(const GhostedField& field, std::size_t e) const;
+  void scatter(const Nodal& values, std::size_t e, OwnedField& field) const;
+  Mat3 gradient(const Nodal& values, std::size_t point) const
+  {
+    return values * shapes_[point].gradient.transpose();
+  }
+  /// ∂θ/∂F where the configuration was taken.
+  Mat3 dilatation_gradient(const Configuration& at, std::size_t point) const
+  {
+    return energy::dilatation_gradient(settings_.model, at.R[point],
+                                       exact() ? at.F[point] : at.R[point]);
+  }
+  /// Mass matrix of the tet over its ρ [m³].
+  Scalar unit_mass(std::size_t e) const;
+  void gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
+                        core::PolarBatch::Matrix& F) const;
+  void measure_masses(const mesh::Mesh& mesh);
+  /// λθ at the points, of point values of θ averaged as the elements do [Pa].
+  core::VecX pressure_of(const core::VecX& theta) const;
+  void add_averaged(const core::VecX& theta, core::VecX& p) const;
+  core::VecX dilatation_rates(const Configuration& at, const GhostedField& d) const;
+  core::VecX pressures(const Configuration& at, const Kinematics& motion) const;
+  void add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
+                      const core::VecX& p, OwnedField& internal, OwnedField& inertia) const;
+  void add_patches(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
+                   fem::BlockMatrix& values) const;
+  Mat3 increment(const Configuration& at, std::size_t e, std::size_t point, const Mat3& G) const;
+
+  const fem::Space* space_;
+  ElementSettings settings_;
+  std::vector<fem::PointShape<N>> shapes_;               ///< by point
+  std::vector<int> region_;                              ///< by local tet
+  std::vector<double> volume_;                           ///< by local tet [m³]
+  Scalar straight_mass_;                                 ///< of a straight tet of unit volume
+  std::unordered_map<std::size_t, Scalar> curved_mass_;  ///< of curved ones, over ρ [m³]
+  fem::Cliques cliques_;
+  std::optional<Patches> patches_;  ///< only with nodal dilatation
+};
+
+}  // namespace trocar::tissue
