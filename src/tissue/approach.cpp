@@ -81,7 +81,8 @@ FreeMotion Tissue::pushed(const OwnedField& u, const OwnedField& forces)
 
 void Tissue::give_up(FreeMotion& motion)
 {
-  factor(current_->at.R);
+  motion.trouble = why_not([&] { factor(current_->at.R); });
+  if (motion.trouble) return;
   Approach& a = *motion.approach;
   motion.base = a.u;
   motion.pushed = a.lambda;

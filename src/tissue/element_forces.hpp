@@ -100,15 +100,25 @@ core::VecX ElementsOf<N>::pressures(const Configuration& at, const Kinematics& m
     const Nodal u = nodal(motion.u, e);
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
       const Mat3& R = at.R[point];
-      const Mat3 F = Mat3::Identity() + gradient(u, point);
+      const Mat3 G = gradient(u, point);
       double& mine = theta[static_cast<Eigen::Index>(point)];
-      mine = energy::dilatation(settings_.model, R, F);
+      mine = energy::dilatation(settings_.model, R, G);
       if (beta > 0.0 && motion.v.value.size() > 0)
-        mine += beta * energy::dilatation_gradient(settings_.model, R, F)
+        mine += beta * energy::dilatation_gradient(settings_.model, R, G)
                            .cwiseProduct(gradient(nodal(motion.v, e), point))
                            .sum();
     }
   }
+  return pressure_of(theta);
+}
+
+template <int N>
+core::VecX ElementsOf<N>::led_pressures(const Configuration& last, const GhostedField& d) const
+{
+  core::VecX theta = dilatation_rates(last, d);
+  for (std::size_t point = 0; point < shapes_.size(); ++point)
+    theta[static_cast<Eigen::Index>(point)] +=
+        energy::dilatation(settings_.model, last.R[point], last.G[point]);
   return pressure_of(theta);
 }
 
@@ -125,15 +135,15 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
   Nodal force = Nodal::Zero();
   for (std::size_t point = points * e; point < points * (e + 1); ++point) {
     const Mat3& R = at.R[point];
-    const Mat3 F = Mat3::Identity() + gradient(u, point);
-    const Mat3 by = energy::dilatation_gradient(settings_.model, R, F);
-    Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, F);
+    const Mat3 G = gradient(u, point);
+    const Mat3 by = energy::dilatation_gradient(settings_.model, R, G);
+    Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, G);
     double pressure = averaged() ? p[static_cast<Eigen::Index>(point)]
-                                 : m.lambda() * energy::dilatation(settings_.model, R, F);
+                                 : m.lambda() * energy::dilatation(settings_.model, R, G);
     if (beta > 0.0) {
-      const Mat3 G = gradient(v, point);
-      P += beta * m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, F, G);
-      if (!averaged()) pressure += beta * m.lambda() * by.cwiseProduct(G).sum();
+      const Mat3 D = gradient(v, point);
+      P += beta * m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
+      if (!averaged()) pressure += beta * m.lambda() * by.cwiseProduct(D).sum();
     }
     force += shapes_[point].volume * (P + pressure * by) * shapes_[point].gradient;
   }
@@ -204,16 +214,16 @@ TetWork ElementsOf<N>::work(const Configuration& at, const Kinematics& motion) c
     const Nodal v = moves ? nodal(motion.v, e) : Nodal::Zero();
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
       const Mat3& R = at.R[point];
-      const Mat3 F = Mat3::Identity() + gradient(u, point);
-      const double theta = energy::dilatation(settings_.model, R, F);
-      work.elastic += shapes_[point].volume * (m.mu() * energy::shear(settings_.model, R, F) +
+      const Mat3 G = gradient(u, point);
+      const double theta = energy::dilatation(settings_.model, R, G);
+      work.elastic += shapes_[point].volume * (m.mu() * energy::shear(settings_.model, R, G) +
                                                0.5 * p[static_cast<Eigen::Index>(point)] * theta);
       if (!moves || m.rayleigh_stiffness == 0.0) continue;
       const auto i = static_cast<Eigen::Index>(point);
-      const Mat3 G = gradient(v, point);
-      const Mat3 by = energy::shear_increment(settings_.model, settings_.tangent, R, F, G);
+      const Mat3 D = gradient(v, point);
+      const Mat3 by = energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
       work.damping_power_stiffness += m.rayleigh_stiffness * shapes_[point].volume *
-                                      (m.mu() * by.cwiseProduct(G).sum() + p_rate[i] * rate[i]);
+                                      (m.mu() * by.cwiseProduct(D).sum() + p_rate[i] * rate[i]);
     }
     if (!moves) continue;
     const double inertia = m.density * v.cwiseProduct(v * unit_mass(e)).sum();
@@ -239,18 +249,18 @@ StressField ElementsOf<N>::stresses(const Configuration& at, const GhostedField&
     AtPoints of_point;
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
       const Mat3& R = at.R[point];
-      const Mat3 F = Mat3::Identity() + gradient(values, point);
+      const Mat3 G = gradient(values, point);
       const double pressure = p[static_cast<Eigen::Index>(point)];
-      const Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, F) +
-                     pressure * energy::dilatation_gradient(settings_.model, R, F);
-      const Mat3 s = settings_.model == Model::linear ? P : cauchy_stress(P, F);
+      const Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, G) +
+                     pressure * energy::dilatation_gradient(settings_.model, R, G);
+      const Mat3 s = settings_.model == Model::linear ? P : cauchy_stress(P, Mat3::Identity() + G);
       const double part = shapes_[point].volume / volume_[e];
       auto six = of_point.col(static_cast<Eigen::Index>(point - points * e));
       six << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
       sums.stress.segment<6>(6 * static_cast<Eigen::Index>(e)) += part * six;
       sums.energy[static_cast<Eigen::Index>(e)] +=
-          part * (m.mu() * energy::shear(settings_.model, R, F) +
-                  0.5 * pressure * energy::dilatation(settings_.model, R, F));
+          part * (m.mu() * energy::shear(settings_.model, R, G) +
+                  0.5 * pressure * energy::dilatation(settings_.model, R, G));
     }
     if constexpr (N == 10)
       sums.corner.segment<24>(24 * static_cast<Eigen::Index>(e)) =

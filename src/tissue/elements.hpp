@@ -45,7 +45,7 @@ struct ElementSettings
 struct Configuration
 {
   std::vector<Mat3> R;  ///< rotations; identities for linear tissue
-  std::vector<Mat3> F;  ///< deformation gradients and
+  std::vector<Mat3> G;  ///< displacement gradients and
   core::VecX p;         ///< pressures λθ [Pa], where the tangent depends on them
 
   bool operator==(const Configuration&) const = default;
@@ -91,6 +91,10 @@ class Elements
   virtual bool upright(const GhostedField& u) const = 0;
   /// Rotations, and for exact tangents the rest, at u. False when a tet is turned inside out.
   virtual bool configure(const GhostedField& u, Configuration& at) const = 0;
+  /// Pressures [Pa] to which the linearisation `last` leads with the further displacement d: what
+  /// Newton's method has for them when they are unknowns of their own. In the tangent they serve
+  /// better than λθ, which after a finite step is λ times the square of the strain off.
+  virtual core::VecX led_pressures(const Configuration& last, const GhostedField& d) const = 0;
   /// As far as the forces of some tets need it.
   virtual void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                              Configuration& at) const = 0;

@@ -157,7 +157,7 @@ bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
     return true;
   }
   at.R.resize(count);
-  at.F.resize(exact() ? count : 0);
+  at.G.resize(exact() ? count : 0);
   constexpr std::size_t width = core::PolarBatch::width;
   core::PolarBatch batch;
   for (std::size_t first = 0; first < count; first += width) {
@@ -167,13 +167,14 @@ bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
       std::fill(at.R.begin() + static_cast<std::ptrdiff_t>(first), at.R.end(), Mat3::Identity());
       return false;
     }
-    for (std::size_t lane = 0; exact() && lane < lanes; ++lane)
-      at.F[first + lane] = batch.get(static_cast<int>(lane));
     batch.rotate();
     for (std::size_t lane = 0; lane < lanes; ++lane)
       at.R[first + lane] = batch.get(static_cast<int>(lane));
   }
-  if (exact()) at.p = pressures(at, {u, {}, {}});
+  if (!exact()) return true;
+  for (std::size_t point = 0; point < count; ++point)
+    at.G[point] = gradient(nodal(u, point / points), point);
+  at.p = pressures(at, {u, {}, {}});
   return true;
 }
 
@@ -192,22 +193,22 @@ void ElementsOf<N>::configure_for(const std::vector<std::size_t>& tets, const Gh
       at.R[point] = core::polar_rotation(Mat3::Identity() + gradient(nodal(u, e), point));
 }
 
-/// ∂P/∂F : G at a point, without what a shared dilatation adds [Pa].
+/// ∂P/∂F : D at a point, without what a shared dilatation adds [Pa].
 template <int N>
 Mat3 ElementsOf<N>::increment(const Configuration& at, std::size_t e, std::size_t point,
-                              const Mat3& G) const
+                              const Mat3& D) const
 {
   const Material& m = material(e);
   const Mat3& R = at.R[point];
-  const Mat3& F = exact() ? at.F[point] : R;
-  Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, F, G);
+  const Mat3 G = exact() ? at.G[point] : Mat3::Zero();
+  Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
   if (exact())
     P += at.p[static_cast<Eigen::Index>(point)] *
-         energy::dilatation_increment(settings_.model, settings_.tangent, R, F, G);
+         energy::dilatation_increment(settings_.model, settings_.tangent, R, G, D);
   const double lambda = lambda_at_point(m);
   if (lambda == 0.0) return P;
   const Mat3 by = dilatation_gradient(at, point);
-  return P + lambda * by.cwiseProduct(G).sum() * by;
+  return P + lambda * by.cwiseProduct(D).sum() * by;
 }
 
 template <int N>
@@ -226,7 +227,7 @@ void ElementsOf<N>::assemble(const Configuration& at, double inverse_h,
                                                       shape, R, unit_mass(e), scale_m, slots);
     for (std::size_t q = 0; exact() && q < points; ++q)
       add_tangent<N>(
-          shape[q], scale_k, [&](const Mat3& G) { return increment(at, e, points * e + q, G); },
+          shape[q], scale_k, [&](const Mat3& D) { return increment(at, e, points * e + q, D); },
           slots, blocks);
     if (settings_.dilatation == Dilatation::element) {
       Nodal sum = Nodal::Zero();

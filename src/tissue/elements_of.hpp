@@ -20,6 +20,7 @@ class ElementsOf final : public Elements
   const fem::Cliques& cliques() const override { return cliques_; }
   bool upright(const GhostedField& u) const override;
   bool configure(const GhostedField& u, Configuration& at) const override;
+  core::VecX led_pressures(const Configuration& last, const GhostedField& d) const override;
   void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                      Configuration& at) const override;
   void assemble(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
@@ -71,13 +72,13 @@ class ElementsOf final : public Elements
   /// ∂θ/∂F where the configuration was taken.
   Mat3 dilatation_gradient(const Configuration& at, std::size_t point) const
   {
-    return energy::dilatation_gradient(settings_.model, at.R[point],
-                                       exact() ? at.F[point] : at.R[point]);
+    return exact() ? energy::dilatation_gradient(settings_.model, at.R[point], at.G[point])
+                   : at.R[point];
   }
   /// Mass matrix of the tet over its ρ [m³].
   Scalar unit_mass(std::size_t e) const;
   void gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
-                        core::PolarBatch::Matrix& F) const;
+                        core::PolarBatch::Matrix& G) const;
   void measure_masses(const mesh::Mesh& mesh);
   /// λθ at the points, of point values of θ averaged as the elements do [Pa].
   core::VecX pressure_of(const core::VecX& theta) const;
@@ -88,7 +89,7 @@ class ElementsOf final : public Elements
                       const core::VecX& p, OwnedField& internal, OwnedField& inertia) const;
   void add_patches(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
                    fem::BlockMatrix& values) const;
-  Mat3 increment(const Configuration& at, std::size_t e, std::size_t point, const Mat3& G) const;
+  Mat3 increment(const Configuration& at, std::size_t e, std::size_t point, const Mat3& D) const;
 
   const fem::Space* space_;
   ElementSettings settings_;

@@ -93,6 +93,41 @@ void Tissue::use_operator(const Configuration& at, const TimeStep& step)
   }
 }
 
+bool Tissue::linearise_at(const OwnedField& iterate, const OwnedField& start)
+{
+  const bool goes_on = !at_.G.empty() && u_at_.value.size() == iterate.value.size() &&
+                       !space_->comm().all(iterate.value == start.value);
+  core::VecX p;
+  if (goes_on)
+    p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
+  if (!configure(space_->with_ghosts(iterate), at_)) {
+    at_.G.clear();
+    return false;
+  }
+  if (at_.G.empty()) return true;
+  u_at_ = iterate;
+  if (goes_on) at_.p = std::move(p);
+  return true;
+}
+
+/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Agreed by
+/// all ranks, as the failures of a factor are. Otherwise the operator fails for good.
+std::optional<std::string> Tissue::why_not(const std::function<void()>& make_operator)
+{
+  const bool rotated = settings_.model != Model::neo_hookean && settings_.tangent == Tangent::rotated;
+  try {
+    make_operator();
+  } catch (const core::Failure& failure) {
+    if (rotated || settings_.model == Model::linear || failure.code() != core::ExitCode::solver)
+      throw;
+    current_->inverse_h = -1.0;
+    current_->uses = 0;
+    return "the exact tangent has no factor (an instability, or too large a step): " +
+           std::string(failure.what());
+  }
+  return std::nullopt;
+}
+
 OwnedField Tissue::external(const TimeStep& step) const
 {
   OwnedField f{step.load * weight_.value};
@@ -126,9 +161,10 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Con
 FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
                                const TimeStep& step, const fem::Load& more)
 {
-  if (!configure(space_->with_ghosts(iterate), at_))
+  if (!linearise_at(iterate, old.u))
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
-  use_operator(at_, step);
+  if (auto trouble = why_not([&] { use_operator(at_, step); }))
+    return {space_->zero(), {}, std::move(trouble)};
   // Under loads that follow r is the rest of large forces: below their round-off there is nothing
   // to be balanced.
   constexpr double rest_of_forces = 1e-10;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -176,8 +177,10 @@ class Tissue
     std::unique_ptr<solve::StepSolver> solver;
   };
 
+  bool linearise_at(const OwnedField& iterate, const OwnedField& start);
   void use_operator(const Configuration& at, const TimeStep& step);
   void factor(const std::vector<Mat3>& R);
+  std::optional<std::string> why_not(const std::function<void()>& make_operator);
   bool factor_worn() const;
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
                                  const std::vector<Mat3>& R_factor) const;
@@ -206,6 +209,7 @@ class Tissue
   fem::BlockMatrix values_;
   double smallest_scale_ = 0.0;  ///< 1e-5 E V^(2/3) [N]
   Configuration at_;             ///< of the present linearisation
+  OwnedField u_at_;  ///< where that is, kept with exact tangents [m]
   OwnedField weight_;            ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Dofs that a prescribed displacement holds: owned dof and which condition.

@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::test {
 namespace {
 
@@ -109,6 +111,19 @@ mesh::Mesh shell(int levels, int layers, double inner, double outer)
   mesh::Mesh mesh = layered(layer, sphere.face);
   add_axis_points(mesh, outer, 3);
   return mesh;
+}
+
+void make_round(mesh::Mesh& mesh)
+{
+  mesh::make_quadratic(mesh);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto end = [&](std::size_t i) {
+        return mesh.x[static_cast<std::size_t>(mesh.tets[t][mesh::tet_edges[k][i]])];
+      };
+      Vec3& middle = mesh.x[static_cast<std::size_t>(mesh.middles[t][k])];
+      middle = 0.5 * (end(0).norm() + end(1).norm()) * middle.normalized();
+    }
 }
 
 mesh::Mesh tube(int around, int along, int layers, double inner, double outer, double height)

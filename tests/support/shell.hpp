@@ -17,6 +17,10 @@ SphereSurface sphere_surface(int levels);
 /// Surfaces "wall" and "outer"; points "on_x", "on_y", "on_z" where the axes meet the outer one.
 mesh::Mesh shell(int levels, int layers, double inner, double outer);
 
+/// Makes a mesh around the origin quadratic, with the middle of every edge at the mean distance of
+/// its ends: faces of spheres become round.
+void make_round(mesh::Mesh& mesh);
+
 /// The same around the z axis, `height` high: surfaces "wall", "outer", "ends"; points "on_x",
 /// "on_y" along the outer surface.
 mesh::Mesh tube(int around, int along, int layers, double inner, double outer, double height);

@@ -156,17 +156,17 @@ core::Mat3 stress_of(tissue::Model model, const tissue::Material& m, const core:
 {
   const core::Mat3 R =
       model == tissue::Model::linear ? core::Mat3::Identity() : core::polar_rotation(F);
-  return m.mu() * tissue::energy::shear_gradient(model, R, F) +
-         m.lambda() * tissue::energy::dilatation(model, R, F) *
-             tissue::energy::dilatation_gradient(model, R, F);
+  return m.mu() * tissue::energy::shear_gradient(model, R, F - core::Mat3::Identity()) +
+         m.lambda() * tissue::energy::dilatation(model, R, F - core::Mat3::Identity()) *
+             tissue::energy::dilatation_gradient(model, R, F - core::Mat3::Identity());
 }
 
 double energy_of(tissue::Model model, const tissue::Material& m, const core::Mat3& F)
 {
   const core::Mat3 R =
       model == tissue::Model::linear ? core::Mat3::Identity() : core::polar_rotation(F);
-  const double theta = tissue::energy::dilatation(model, R, F);
-  return m.mu() * tissue::energy::shear(model, R, F) + 0.5 * m.lambda() * theta * theta;
+  const double theta = tissue::energy::dilatation(model, R, F - core::Mat3::Identity());
+  return m.mu() * tissue::energy::shear(model, R, F - core::Mat3::Identity()) + 0.5 * m.lambda() * theta * theta;
 }
 
 // A turned body answers as the unturned one does in its own axes; stress is the derivative of the
