@@ -73,22 +73,32 @@ VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Material>
 VecX wanted_sizes(const mesh::Mesh& mesh, const VecX& errors, double energy, double target)
 {
   constexpr double finest = 0.25, coarsest = 2.0;
+  constexpr double edge_over_size = 1.2;  // of Gmsh's meshes: mean edge over the size asked for
   const double p = mesh.quadratic() ? 2.0 : 1.0, d = 3.0;
   double sum = 0.0;
   for (double square : errors) sum += std::pow(square, d / (2.0 * p + d));
   const double common = std::pow(target * target * energy / sum, 0.5 / p);
-  VecX logs = VecX::Zero(mesh.node_count()), weight = logs;
+  VecX logs = VecX::Zero(mesh.node_count()), weight = logs, edge(mesh.tet_count());
   for (int t = 0; t < mesh.tet_count(); ++t) {
+    edge[t] = mesh::mean_edge(mesh::corners(mesh, t));
     const double ratio = common * std::pow(errors[t], -1.0 / (2.0 * p + d));
     const double volume = mesh::tet_volume(mesh, t);
-    const double size =
-        mesh::mean_edge(mesh::corners(mesh, t)) * std::clamp(ratio, finest, coarsest);
     for (int node : mesh::nodes_of(mesh, t)) {
-      logs[node] += volume * std::log(size);
+      logs[node] += volume * std::log(edge[t] * std::clamp(ratio, finest, coarsest));
       weight[node] += volume;
     }
   }
-  return (logs.array() / weight.array()).exp();
+  VecX size = (logs.array() / weight.array()).exp();
+  // Means at the nodes lose part of the contrast, and with it the target: all are made smaller by
+  // what the error they lead to is off.
+  double predicted = 0.0;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    double here = 0.0;
+    for (int node : mesh.tets[static_cast<std::size_t>(t)]) here += 0.25 * size[node];
+    predicted += errors[t] * std::pow(here / edge[t], 2.0 * p);
+  }
+  size *= std::pow(target * target * energy / predicted, 0.5 / p) / edge_over_size;
+  return size;
 }
 
 void report_error(const Simulation& simulation, Recorder& recorder, const Log& log,
@@ -124,7 +134,8 @@ void report_error(const Simulation& simulation, Recorder& recorder, const Log& l
   const VecX sizes = wanted_sizes(scenario.mesh, errors, energy + all, target);
   base::on_root(simulation.space().comm(),
                 [&] { io::write_size_field(scenario.output.size_field, scenario.mesh, sizes); });
-  log.note("  sizes for the next mesh: " + scenario.output.size_field + " (gmsh -bgm)");
+  log.note("  sizes for the next mesh: " + scenario.output.size_field +
+           " (a background field for Gmsh; scripts/study adapt)");
 }
 
 }  // namespace trocar::driver

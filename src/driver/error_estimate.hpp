@@ -16,7 +16,8 @@ core::VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Mat
 /// error `target` with the fewest tets, if the error's density did not depend on the mesh
 /// (Coorevits, Ladeveze and Pelle 1995): h_new / h = (target² E² / Σ e^(2d/(2p+d)))^(1/2p)
 /// e^(-2/(2p+d)) of a tet with the error e, d = 3 and p the elements' order; between a quarter and
-/// twice what it is. `errors` as above, `energy` their sum with twice the energy, E² [J].
+/// twice what it is, and scaled so that sizes meant at the nodes lead to the target, in terms of
+/// what Gmsh makes of a size. `errors` as above, `energy` their sum with twice the energy, E² [J].
 core::VecX wanted_sizes(const mesh::Mesh& mesh, const core::VecX& errors, double energy,
                         double target);
 

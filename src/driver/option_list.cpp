@@ -27,7 +27,8 @@ std::vector<OptionSpec> general_options()
              "tissue law"),
       choice("tissue_element", "auto", {"auto", "p1", "p1_anp", "p2", "p2_bbar", "p2_anp"},
              "tets: linear, quadratic (middle nodes are added where the mesh has none); _anp: with "
-             "nodal, _bbar: with element averages of the dilatation; auto: as the mesh is"),
+             "nodal, _bbar: with element averages of the dilatation; auto: p2, beyond nu = 0.49 "
+             "p2_anp"),
       choice("tissue_tangent", "rotated", {"rotated", "exact"},
              "of corotational tissue: with the rotations held, as in the paper, or exact "
              "(neo_hookean is always exact)"),
@@ -51,7 +52,8 @@ void add_tissue(std::vector<OptionSpec>& t)
 void add_boundary(std::vector<OptionSpec>& t)
 {
   const std::vector<OptionSpec> boundary{
-      list("fix", "physical surfaces or points held still: NAME[:axes],… (axes such as xz)"),
+      list("fix",
+           "physical surfaces, curves or points held still: NAME[:axes],… (axes such as xz)"),
       vector("boundary_<surf>_displacement", "free,free,free", "m",
              "prescribed displacement of a surface or point group, 'free' per axis"),
       vector("boundary_<surf>_traction", "0,0,0", "Pa", "dead traction on a physical surface"),
@@ -135,6 +137,9 @@ void add_insertion(std::vector<OptionSpec>& t)
                            "tissue that carries the tip's force; at least one local edge"));
   t.push_back(not_negative("insertion_tip_friction", "1", "1",
                            "lateral over axial force at which the tip slides on a surface"));
+  t.push_back(flag("insertion_radius_correction",
+                   "soften the rows by what a coarse mesh hides of the tissue next to a thin "
+                   "shaft; off for the paper's tables"));
   t.push_back({"insertion_eta", OptionType::real, "0", "1",
                "axial force as this part of the sticking one (the papers' law; depends on mesh and "
                "step, for reproduction only); 0 = off",
@@ -211,8 +216,10 @@ void add_output(std::vector<OptionSpec>& t)
            "estimate the discretisation error at the end of the run from the stress, by volume"),
       not_negative("error_target", "0", "1",
                    "energy error to be told how far off the run is; 0 = none"),
+      flag("locking_gauge",
+           "compare every cavity's dP/dV with that of p2_anp on the same mesh before the run"),
       word("error_size_field", "",
-           "file for the edge lengths of a mesh with that error, for gmsh -bgm"),
+           "file for the edge lengths of a mesh with that error, a background field for Gmsh"),
       flag("check", "stop after set-up: options, mesh, operator"),
       flag("quiet", "no progress lines"),
   };

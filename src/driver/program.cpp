@@ -10,6 +10,7 @@
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
 #include "driver/error_estimate.hpp"
+#include "driver/locking_gauge.hpp"
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
 #include "driver/provenance.hpp"
@@ -101,12 +102,13 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
     return;
   }
   Recorder recorder(simulation, invocation, options.resolved());
+  if (scenario.output.locking_gauge) report_locking(simulation, recorder, log);
   StepResult start = simulation.initial_state();
   if (!start.state) throw core::solver_error("at the start: " + start.why);
   recorder.record(simulation, *start.state, start.report, 0, 0.0, true);
   log.step(0, *start.state, start.report);
   if (scenario.time.analysis == Analysis::pv_curve)
-    run_pv_curve(simulation, recorder, log, *start.state);
+    start.state = run_pv_curve(simulation, recorder, log, *start.state);
   else
     start.state = Clock(simulation, recorder, log).run(std::move(*start.state));
   if (scenario.output.error_estimate) report_error(simulation, recorder, log, *start.state);

@@ -89,7 +89,7 @@ void write(const Simulation& simulation, Recorder& recorder, const Log& log,
 
 }  // namespace
 
-void run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const State& start)
+State run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const State& start)
 {
   const PvSettings& pv = simulation.scenario().pv;
   std::vector<Point> points;
@@ -116,11 +116,13 @@ void run_pv_curve(Simulation& simulation, Recorder& recorder, Log& log, const St
       log.step(number, shown, report);
       points.push_back({ratio, report.cavities[static_cast<std::size_t>(pv.cavity)].pressure});
     }
+    return state;
   };
   sweep(false);
   std::reverse(points.begin(), points.end());
-  sweep(true);
+  State end = sweep(true);
   write(simulation, recorder, log, points);
+  return end;
 }
 
 }  // namespace trocar::driver

@@ -50,16 +50,29 @@ std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh&
   return materials;
 }
 
+/// Above this Poisson's ratio quadratic tets share their dilatation unless told otherwise: below
+/// they lose little by locking, and sharing costs a wider matrix (docs/studies.md).
+constexpr double shared_from = 0.49;
+
 /// Gives the mesh the order of the elements asked for; returns how these take their dilatation.
-tissue::Dilatation shape_elements(const std::string& element, mesh::Mesh& mesh)
+tissue::Dilatation shape_elements(std::string element,
+                                  const std::vector<tissue::Material>& materials, mesh::Mesh& mesh)
 {
-  if (element[0] == 'p') element[1] == '1' ? mesh::make_linear(mesh) : mesh::make_quadratic(mesh);
-  if (element.ends_with("_anp")) return tissue::Dilatation::nodal;
-  if (element.ends_with("_bbar")) return tissue::Dilatation::element;
-  return tissue::Dilatation::pointwise;
+  const auto any_above = [&](double lambda_over_mu) {
+    return std::any_of(materials.begin(), materials.end(), [&](const tissue::Material& m) {
+      return m.lambda() > lambda_over_mu * m.mu();
+    });
+  };
+  if (element == "auto")
+    element = any_above(2.0 * shared_from / (1.0 - 2.0 * shared_from)) ? "p2_anp" : "p2";
+  element[1] == '1' ? mesh::make_linear(mesh) : mesh::make_quadratic(mesh);
+  if (element == "p1_anp") return tissue::Dilatation::nodal;
+  if (element == "p2_anp" && any_above(tissue::most_at_point)) return tissue::Dilatation::nodal;
+  return element == "p2_bbar" ? tissue::Dilatation::element : tissue::Dilatation::pointwise;
 }
 
-tissue::TissueSettings read_tissue(Options& options, const mesh::Mesh& mesh, const base::Comm& comm)
+tissue::TissueSettings read_tissue(Options& options, std::vector<tissue::Material> materials,
+                                   const mesh::Mesh& mesh, const base::Comm& comm)
 {
   tissue::TissueSettings settings;
   const std::map<std::string, tissue::Model> models{{"linear", tissue::Model::linear},
@@ -70,7 +83,7 @@ tissue::TissueSettings read_tissue(Options& options, const mesh::Mesh& mesh, con
       options.text("tissue_tangent") == "exact" ? tissue::Tangent::exact : tissue::Tangent::rotated;
   settings.mass =
       options.text("tissue_mass") == "lumped" ? tissue::Mass::lumped : tissue::Mass::consistent;
-  settings.materials = read_materials(options, mesh);
+  settings.materials = std::move(materials);
   settings.boundary = read_boundary(options, mesh, comm);
   return settings;
 }
@@ -175,6 +188,7 @@ OutputSettings read_output(Options& options)
   output.quiet = options.flag("quiet");
   output.energy = options.flag("output_energy");
   output.error_target = options.real("error_target");
+  output.locking_gauge = options.flag("locking_gauge");
   output.size_field = options.text("error_size_field");
   if (!output.size_field.empty() && !(output.error_target > 0.0))
     throw core::option_error(
@@ -211,6 +225,19 @@ void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
     scenario.tissue.pinned = planned_nodes(scenario.needles, scenario.mesh, locator, layers);
 }
 
+void add_radius_correction(Scenario& scenario)
+{
+  insertion::RadiusCorrection& correction = scenario.insertion.radius_correction.emplace();
+  correction.fit = insertion::radius_fit(
+      scenario.mesh.quadratic(), scenario.tissue.dilatation != tissue::Dilatation::pointwise);
+  for (const needle::NeedleSettings& needle : scenario.needles)
+    correction.radius.push_back(needle.section.outer);
+  for (const tissue::Material& material : scenario.tissue.materials) {
+    correction.shear.push_back(material.mu());
+    correction.poisson.push_back(material.poisson);
+  }
+}
+
 void refuse_dashpots_without_time(const Scenario& scenario)
 {
   if (scenario.time.analysis == Analysis::dynamic || scenario.time.end > 0.0) return;
@@ -245,14 +272,16 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");
   scenario.mesh =
       with_cavities_hollow(options, io::read_gmsh(file, options.real("mesh_scale"), comm));
+  std::vector<tissue::Material> materials = read_materials(options, scenario.mesh);
   const tissue::Dilatation dilatation =
-      shape_elements(options.text("tissue_element"), scenario.mesh);
-  scenario.tissue = read_tissue(options, scenario.mesh, comm);
+      shape_elements(options.text("tissue_element"), materials, scenario.mesh);
+  scenario.tissue = read_tissue(options, std::move(materials), scenario.mesh, comm);
   scenario.tissue.dilatation = dilatation;
   scenario.insertion = read_insertion(options, scenario.mesh);
   refuse_dashpots_without_time(scenario);
   read_compliance(options, scenario);
   add_needles(options, scenario, comm);
+  if (options.flag("insertion_radius_correction")) add_radius_correction(scenario);
   read_cavities(options, scenario, comm);
   options.refuse_unread();
   add_warnings(scenario);

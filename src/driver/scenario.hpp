@@ -60,7 +60,8 @@ struct OutputSettings
   bool error_estimate = false;
   double error_target = 0.0;  ///< of the energy norm, 0: none
   std::string size_field;     ///< file for the sizes of the next mesh; empty: none
-  bool stale_error = false;   ///< solve stale steps exactly as well
+  bool locking_gauge = false;
+  bool stale_error = false;  ///< solve stale steps exactly as well
   bool quiet = false;
 };
 

@@ -53,8 +53,17 @@ Friction Insertion::friction_of(const InsertionState& state, const core::MatX& t
   return sum;
 }
 
+RadiusCorrection::Softness Insertion::radius_softness(const Site& site, int body,
+                                                      double length) const
+{
+  if (!settings_.radius_correction) return {};
+  return settings_.radius_correction->at(body, mesh_->region[static_cast<std::size_t>(site.tet)],
+                                         local_edge(*mesh_, site.tet), length);
+}
+
 void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
-                               constraint::Row row, PointRows& mine, constraint::Set& set) const
+                               double radius_softness, constraint::Row row, PointRows& mine,
+                               constraint::Set& set) const
 {
   const auto add = [&] {
     set.add(row);
@@ -76,6 +85,12 @@ void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& frict
     row.bound = mine.bound;
     mine.axial = add();
   }
+  if (!(radius_softness > 0.0)) return;
+  // Both laws push the same piece of shaft: its way through the tissue is that of their sum.
+  for (int row_of_law : {mine.viscous, mine.axial})
+    if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, radius_softness});
+  if (mine.viscous >= 0 && mine.axial >= 0)
+    set.couplings().push_back({mine.viscous, mine.axial, radius_softness});
 }
 
 /// Which points hold the shaft laterally: all, but when they stand closer than `merge` local edges
@@ -98,13 +113,15 @@ std::vector<bool> Insertion::lateral_points(const InsertionState& state) const
 }
 
 PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
-                                    const Friction& friction, const needle::Shaft& shaft,
-                                    const Deformed& tissue, int body, double h,
-                                    constraint::Set& set) const
+                                    const Friction& friction, double length,
+                                    const needle::Shaft& shaft, const Deformed& tissue, int body,
+                                    double h, constraint::Set& set) const
 {
   PointRows mine;
   constraint::Row row;
-  row.anchor = path.sites[static_cast<std::size_t>(point.site)].anchor;
+  const Site& site = path.sites[static_cast<std::size_t>(point.site)];
+  const RadiusCorrection::Softness radius = radius_softness(site, body, length);
+  row.anchor = site.anchor;
   row.body = body;
   row.point = set.size();
   const Vec3 p = tissue.position(row.anchor);
@@ -116,15 +133,17 @@ PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, co
     row.start = start;
   };
   if (lateral) {
+    row.softness = radius.lateral;
     mine.first = set.size();
     aim(on_shaft.normal_1, point.lambda[0]);
     set.add(row);
     aim(on_shaft.normal_2, point.lambda[1]);
     set.add(row);
   }
+  row.softness = 0.0;
   aim(on_shaft.tangent, point.lambda[2]);
   row.gap = mine.slid = on_shaft.s - point.needle_arc;
-  add_axial_rows(point, friction, h, row, mine, set);
+  add_axial_rows(point, friction, h, radius.axial, row, mine, set);
   return mine;
 }
 
@@ -136,9 +155,9 @@ CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaf
   const core::MatX tributary = tributary_lengths(state);
   const std::vector<bool> lateral = lateral_points(state);
   for (std::size_t k = 0; k < state.points.size(); ++k)
-    rows.points.push_back(add_point_rows(state.points[k], lateral[k], state.path,
-                                         friction_of(state, tributary, k), shaft, tissue, body, h,
-                                         set));
+    rows.points.push_back(add_point_rows(
+        state.points[k], lateral[k], state.path, friction_of(state, tributary, k),
+        tributary.row(static_cast<Eigen::Index>(k)).sum(), shaft, tissue, body, h, set));
   if (state.tip.pressed)
     rows.tip = add_tip_rows(state.tip, state.phase == Phase::contact, resistance(state),
                             settings_.tip.friction, shaft, tissue, body, set);

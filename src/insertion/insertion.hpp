@@ -8,6 +8,7 @@
 #include "insertion/deformed.hpp"
 #include "insertion/membranes.hpp"
 #include "insertion/path.hpp"
+#include "insertion/radius_correction.hpp"
 #include "insertion/tip.hpp"
 #include "law/problem.hpp"
 #include "needle/needle.hpp"
@@ -62,6 +63,7 @@ struct InsertionSettings
   double stick_tolerance = 1e-9;  ///< |δ| below which a point has stuck [m]
   TipSettings tip{};
   PunctureSettings puncture{};
+  std::optional<RadiusCorrection> radius_correction{};
 };
 
 /// Which rows a coupling point got in a set, and where it was on the shaft.
@@ -151,11 +153,13 @@ class Insertion
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;
   std::vector<bool> lateral_points(const InsertionState& state) const;
+  RadiusCorrection::Softness radius_softness(const Site& site, int body, double length) const;
   PointRows add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
-                           const Friction& friction, const needle::Shaft& shaft,
+                           const Friction& friction, double length, const needle::Shaft& shaft,
                            const Deformed& tissue, int body, double h, constraint::Set& set) const;
   void add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
-                      constraint::Row row, PointRows& mine, constraint::Set& set) const;
+                      double radius_softness, constraint::Row row, PointRows& mine,
+                      constraint::Set& set) const;
   void accept_point(CouplingPoint& point, const PointRows& rows,
                     const law::Multipliers& multipliers, CouplingReport& report) const;
   void drop_points_ahead(InsertionState& state, double arc) const;

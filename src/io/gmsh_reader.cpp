@@ -20,10 +20,10 @@ namespace {
 constexpr int point_type = 15;
 struct Order
 {
-  int triangle_type, tet_type;
-  std::size_t triangle_nodes, tet_nodes;
+  int line_type, triangle_type, tet_type;
+  std::size_t line_nodes, triangle_nodes, tet_nodes;
 };
-constexpr Order linear{2, 4, 3, 4}, quadratic{9, 11, 6, 10};
+constexpr Order linear{1, 2, 4, 2, 3, 4}, quadratic{8, 9, 11, 3, 6, 10};
 constexpr std::array<std::size_t, 6> middles_in_gmsh{4, 5, 6, 7, 9, 8};
 
 /// The Gmsh library between initialize and finalize, silent and ignorant of our command line.
@@ -194,13 +194,40 @@ void read_points(mesh::Mesh& mesh, const RowOfTag& row_of)
   for (const Group& group : physical_groups(0)) {
     std::vector<std::size_t> tags, corners;
     elements_of(mesh.file, group, point_type, tags, corners);
-    mesh::PointGroup points{group.name, {}};
+    mesh::PointGroup points{group.name, {}, {}};
     for (std::size_t tag : corners) {
       const auto row = row_of.find(tag);
       if (row != row_of.end()) points.nodes.push_back(row->second);
     }
     std::sort(points.nodes.begin(), points.nodes.end());
     mesh.points.push_back(std::move(points));
+  }
+}
+
+/// Curves are read as groups of points. One whose name a surface or a point has is left out: the
+/// name keeps its meaning.
+void read_curves(mesh::Mesh& mesh, const RowOfTag& row_of, const Order& order)
+{
+  const auto taken = [&](const std::string& name) {
+    const auto has = [&](const auto& group) { return group.name == name; };
+    return std::any_of(mesh.surfaces.begin(), mesh.surfaces.end(), has) ||
+           std::any_of(mesh.points.begin(), mesh.points.end(), has);
+  };
+  for (const Group& group : physical_groups(1)) {
+    if (taken(group.name)) continue;
+    std::vector<std::size_t> tags, nodes;
+    elements_of(mesh.file, group, order.line_type, tags, nodes);
+    mesh::PointGroup curve{group.name, {}, {}};
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      const auto a = row_of.find(nodes[order.line_nodes * i]);
+      const auto b = row_of.find(nodes[order.line_nodes * i + 1]);
+      for (const auto& end : {a, b})
+        if (end != row_of.end()) curve.nodes.push_back(end->second);
+      if (a != row_of.end() && b != row_of.end()) curve.edges.push_back({a->second, b->second});
+    }
+    std::sort(curve.nodes.begin(), curve.nodes.end());
+    curve.nodes.erase(std::unique(curve.nodes.begin(), curve.nodes.end()), curve.nodes.end());
+    mesh.points.push_back(std::move(curve));
   }
 }
 
@@ -234,6 +261,7 @@ void read_on_root(mesh::Mesh& mesh, double scale)
     mesh.index_middles();
     read_surfaces(mesh, row_of, order);
     read_points(mesh, row_of);
+    read_curves(mesh, row_of, order);
   } catch (const std::string& message) {
     throw core::data_error(mesh.file + ": Gmsh cannot read it: " + message);
   }

@@ -85,10 +85,15 @@ Mesh hollow(const Mesh& mesh, const std::string& volume)
     if (!kept.faces.empty()) rest.surfaces.push_back(std::move(kept));
   }
   for (const PointGroup& point : mesh.points) {
-    PointGroup kept{point.name, {}};
+    PointGroup kept{point.name, {}, {}};
     for (int node : point.nodes)
       if (number[static_cast<std::size_t>(node)] >= 0)
         kept.nodes.push_back(number[static_cast<std::size_t>(node)]);
+    for (const auto& [a, b] : point.edges) {
+      const std::array<int, 2> edge{number[static_cast<std::size_t>(a)],
+                                    number[static_cast<std::size_t>(b)]};
+      if (edge[0] >= 0 && edge[1] >= 0) kept.edges.push_back(edge);
+    }
     if (!kept.nodes.empty()) rest.points.push_back(std::move(kept));
   }
   std::set<Face> removed;

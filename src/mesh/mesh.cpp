@@ -99,12 +99,18 @@ const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name)
 
 std::vector<int> group_nodes(const Mesh& mesh, const std::string& name)
 {
-  for (const PointGroup& group : mesh.points)
-    if (group.name == name) return group.nodes;
+  for (const PointGroup& group : mesh.points) {
+    if (group.name != name) continue;
+    std::vector<int> nodes = group.nodes;
+    for (const auto& [a, b] : group.edges)
+      if (mesh.quadratic() && mesh.has_edge(a, b)) nodes.push_back(mesh.middle_of(a, b));
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+  }
   std::vector<std::string> names = surface_names(mesh);
   for (const PointGroup& group : mesh.points) names.push_back(group.name);
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throw core::data_error(mesh.file + ": no physical surface or point '" + name + "'" +
+    throw core::data_error(mesh.file + ": no physical surface, curve or point '" + name + "'" +
                            core::did_you_mean(name, names));
   std::vector<int> nodes;
   for (const Face& face : surface_group(mesh, name).faces)
@@ -140,6 +146,7 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
   for (std::size_t i = 0; i < names.size(); ++i) {
     mesh.points[i].name = names[i];
     comm.broadcast(mesh.points[i].nodes);
+    broadcast_rows(mesh.points[i].edges, comm);
   }
 }
 

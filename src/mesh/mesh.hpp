@@ -28,11 +28,12 @@ struct SurfaceGroup
   std::vector<Face> faces;  ///< by their corners
 };
 
-/// A physical group of points.
+/// A physical group of points, or of curves by their edges.
 struct PointGroup
 {
   std::string name;
-  std::vector<int> nodes;
+  std::vector<int> nodes;                 ///< points, and corners of the tets on curves
+  std::vector<std::array<int, 2>> edges;  ///< of curves, by their corners
 };
 
 /// The reference mesh, whole and identical on every rank. Fields and matrices are distributed;

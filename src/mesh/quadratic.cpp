@@ -91,6 +91,7 @@ void make_linear(Mesh& mesh)
   for (PointGroup& points : mesh.points) {
     renumber(points.nodes);
     std::erase(points.nodes, -1);
+    for (auto& edge : points.edges) renumber(edge);
   }
   mesh.middles.clear();
   mesh.index_middles();

@@ -119,8 +119,7 @@ inline Mat3 dilatation_increment(Model model, Tangent tangent, const Mat3& R, co
     const Mat3 back = cofactor(F) / J;
     return J * (back.cwiseProduct(D).sum() * back - back * D.transpose() * back);
   }
-  if (model == Model::corotational && tangent == Tangent::exact)
-    return rotation_increment(R, G, D);
+  if (model == Model::corotational && tangent == Tangent::exact) return rotation_increment(R, G, D);
   return Mat3::Zero();
 }
 

@@ -114,7 +114,8 @@ bool Tissue::linearise_at(const OwnedField& iterate, const OwnedField& start)
 /// all ranks, as the failures of a factor are. Otherwise the operator fails for good.
 std::optional<std::string> Tissue::why_not(const std::function<void()>& make_operator)
 {
-  const bool rotated = settings_.model != Model::neo_hookean && settings_.tangent == Tangent::rotated;
+  const bool rotated =
+      settings_.model != Model::neo_hookean && settings_.tangent == Tangent::rotated;
   try {
     make_operator();
   } catch (const core::Failure& failure) {

@@ -209,7 +209,7 @@ class Tissue
   fem::BlockMatrix values_;
   double smallest_scale_ = 0.0;  ///< 1e-5 E V^(2/3) [N]
   Configuration at_;             ///< of the present linearisation
-  OwnedField u_at_;  ///< where that is, kept with exact tangents [m]
+  OwnedField u_at_;              ///< where that is, kept with exact tangents [m]
   OwnedField weight_;            ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Dofs that a prescribed displacement holds: owned dof and which condition.

@@ -56,7 +56,7 @@ std::vector<double> radii(int layers, double inner, double outer)
 void add_axis_points(mesh::Mesh& mesh, double outer, int axes)
 {
   for (int axis = 0; axis < axes; ++axis) {
-    mesh::PointGroup group{std::string("on_") + static_cast<char>('x' + axis), {}};
+    mesh::PointGroup group{std::string("on_") + static_cast<char>('x' + axis), {}, {}};
     for (int i = 0; i < mesh.node_count(); ++i) {
       Vec3 x = mesh.x[static_cast<std::size_t>(i)];
       if (axes == 2) x.z() = 0.0;
@@ -146,7 +146,7 @@ mesh::Mesh tube(int around, int along, int layers, double inner, double outer, d
     layer.push_back(points);
   }
   mesh::Mesh mesh = layered(layer, face);
-  mesh::PointGroup ends{"ends", {}};
+  mesh::PointGroup ends{"ends", {}, {}};
   for (int i = 0; i < mesh.node_count(); ++i) {
     const double z = mesh.x[static_cast<std::size_t>(i)].z();
     if (z == 0.0 || z == height) ends.nodes.push_back(i);

@@ -51,9 +51,9 @@ double lame_error(const Kind& kind, int levels, int layers, double poisson)
   const driver::StepResult result = simulation.initial_state();
   if (!result.state) throw core::solver_error(result.why);
   const double V0 = simulation.cavities()->wall(0).volume();
-  const double u = a * a * a / (b * b * b - a * a * a) *
-                   ((1.0 - 2.0 * poisson) * a / E +
-                    b * b * b * (1.0 + poisson) / (2.0 * E * a * a));
+  const double u =
+      a * a * a / (b * b * b - a * a * a) *
+      ((1.0 - 2.0 * poisson) * a / E + b * b * b * (1.0 + poisson) / (2.0 * E * a * a));
   return 3.0 * u / a / (result.report.cavities[0].volume / V0 - 1.0) - 1.0;
 }
 
@@ -77,7 +77,7 @@ TEST(LameShellElements, QuadraticTetsFindThePressure)
           !kind.quadratic && kind.dilatation == Dilatation::pointwise && poisson > 0.48;
       const bool strained =  // quadratic tets that take θ pointwise lock late, but they do
           kind.quadratic && kind.dilatation == Dilatation::pointwise && poisson > 0.499;
-      EXPECT_LT(std::abs(error), strained        ? 0.03
+      EXPECT_LT(std::abs(error), strained         ? 0.03
                                  : kind.quadratic ? 0.005
                                  : locks          ? 10.0
                                                   : 0.06)

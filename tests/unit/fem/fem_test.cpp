@@ -166,7 +166,8 @@ double energy_of(tissue::Model model, const tissue::Material& m, const core::Mat
   const core::Mat3 R =
       model == tissue::Model::linear ? core::Mat3::Identity() : core::polar_rotation(F);
   const double theta = tissue::energy::dilatation(model, R, F - core::Mat3::Identity());
-  return m.mu() * tissue::energy::shear(model, R, F - core::Mat3::Identity()) + 0.5 * m.lambda() * theta * theta;
+  return m.mu() * tissue::energy::shear(model, R, F - core::Mat3::Identity()) +
+         0.5 * m.lambda() * theta * theta;
 }
 
 // A turned body answers as the unturned one does in its own axes; stress is the derivative of the

@@ -11,6 +11,7 @@
 #include "io/gmsh_reader.hpp"
 #include "mesh/locator.hpp"
 #include "mesh/partition.hpp"
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 #include "support/block.hpp"
 
@@ -90,6 +91,55 @@ TEST(GmshReader, EveryFormatGivesTheSameMesh)
     for (int i = 0; i < mesh.node_count(); ++i)
       EXPECT_LT((mesh.x[static_cast<std::size_t>(i)] - first.x[static_cast<std::size_t>(i)]).norm(),
                 1e-15);
+  }
+}
+
+/// A unit cube with one edge along x as physical curve; another has the name of a surface.
+std::string write_curves(int order)
+{
+  const std::string file = "curves_" + std::to_string(order) + ".msh";
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1, 1);
+  gmsh::model::occ::synchronize();
+  const auto name = [](int dim, const std::vector<double>& high, const std::string& text) {
+    gmsh::vectorpair found;
+    gmsh::model::getEntitiesInBoundingBox(-0.01, -0.01, -0.01, high[0] + 0.01, high[1] + 0.01,
+                                          high[2] + 0.01, found, dim);
+    gmsh::model::setPhysicalName(dim, gmsh::model::addPhysicalGroup(dim, {found[0].second}), text);
+  };
+  name(3, {1, 1, 1}, "cube");
+  name(2, {1, 1, 0}, "floor");
+  name(1, {1, 0, 0}, "edge");
+  name(1, {0, 1, 0}, "floor");
+  gmsh::option::setNumber("Mesh.CharacteristicLengthMax", 0.3);
+  gmsh::model::mesh::generate(3);
+  gmsh::model::mesh::setOrder(order);
+  gmsh::write(file);
+  gmsh::finalize();
+  return file;
+}
+
+TEST(GmshReader, CurvesAreGroupsOfPointsWithTheirMiddles)
+{
+  const base::Comm comm(MPI_COMM_WORLD);
+  for (int order : {1, 2}) {
+    std::string file;
+    base::on_root(comm, [&] { file = write_curves(order); });
+    comm.broadcast(file);
+    mesh::Mesh mesh = io::read_gmsh(file, 1.0, comm);
+    mesh::make_quadratic(mesh);
+    const std::vector<int> all = mesh::group_nodes(mesh, "edge");
+    std::vector<int> on_line, on_floor;
+    for (int i = 0; i < mesh.node_count(); ++i) {
+      const Vec3& x = mesh.x[static_cast<std::size_t>(i)];
+      if (x.tail<2>().norm() < 1e-12) on_line.push_back(i);
+      if (std::abs(x[2]) < 1e-12) on_floor.push_back(i);
+    }
+    EXPECT_EQ(all, on_line);
+    EXPECT_EQ(mesh::group_nodes(mesh, "floor"), on_floor);
+    mesh::make_linear(mesh);
+    EXPECT_EQ(2 * mesh::group_nodes(mesh, "edge").size(), all.size() + 1);
   }
 }
 

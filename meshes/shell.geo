@@ -1,0 +1,20 @@
+// Hollow sphere with a fluid inside, for the closed form of Lame: radii 11 and 25 mm.
+SetFactory("OpenCASCADE");
+DefineConstant[h = 0.006];  // edge length outside [m]; half of it at the wall
+Sphere(1) = {0, 0, 0, 0.025};
+Sphere(2) = {0, 0, 0, 0.011};
+BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+Mesh.CharacteristicLengthExtendFromBoundary = 0;
+Mesh.CharacteristicLengthFromPoints = 0;
+Field[1] = MathEval;
+Field[1].F = Sprintf("%g * (0.5 + 0.5 * (Sqrt(x^2 + y^2 + z^2) - 0.011) / 0.014)", h);
+Background Field = 1;
+Mesh.Optimize = 1;
+Mesh.MshFileVersion = 4.1;
+eps = 1e-4;
+wall() = Surface In BoundingBox {-0.011 - eps, -0.011 - eps, -0.011 - eps, 0.011 + eps, 0.011 + eps, 0.011 + eps};
+outer() = Boundary{ Volume{3}; };
+outer() -= {wall()};
+Physical Volume("tissue") = {3};
+Physical Surface("wall") = wall();
+Physical Surface("outer") = outer();
