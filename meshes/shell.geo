@@ -10,6 +10,7 @@ Field[1] = MathEval;
 Field[1].F = Sprintf("%g * (0.5 + 0.5 * (Sqrt(x^2 + y^2 + z^2) - 0.011) / 0.014)", h);
 Background Field = 1;
 Mesh.Optimize = 1;
+Mesh.ElementOrder = 2;  // round walls
 Mesh.MshFileVersion = 4.1;
 eps = 1e-4;
 wall() = Surface In BoundingBox {-0.011 - eps, -0.011 - eps, -0.011 - eps, 0.011 + eps, 0.011 + eps, 0.011 + eps};
