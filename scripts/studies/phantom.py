@@ -2,7 +2,8 @@
 
 Three meshes of linear tets and the paper's mesh recipe, slipping and bonded plates, three models.
 Linear tets at nu = 0.485 are not converged in pressure and dP/dV: the table says so itself.
-Writes results/phantom_study/{phantom.csv,contours.png,markers.png}.
+The same mesh with every element beside that (slipping plates, follower).
+Writes results/phantom_study/{phantom.csv,elements.csv,contours.png,markers.png,elements.png}.
 """
 
 import h5py
@@ -39,7 +40,7 @@ def contour(x, nodes, middle):
 
 def draw(folder, run_folder):
     with h5py.File(run_folder / "run.h5") as r:
-        x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:]
+        x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:, :4]
     wall = wall_nodes(x, tets)
     ring = contour(x, wall, CENTRE[1])
     figure, axes = plt.subplots(1, 4, figsize=(11, 3.8), constrained_layout=True, sharey=True)
@@ -74,12 +75,45 @@ def draw(folder, run_folder):
 def contour_point(run_folder):
     """Displacement at 9 mm of the contour's point 45 degrees from the probe side [mm]."""
     with h5py.File(run_folder / "run.h5") as r:
-        x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:]
+        x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:, :4]
     wall = wall_nodes(x, tets)
     target = CENTRE + 0.01 / np.sqrt(2) * np.array([-1, 0, -1])
     node = wall[np.argmin(np.linalg.norm(x[wall] - target, axis=1))]
     u = field(run_folder, 3)
     return 1e3 * np.linalg.norm(u[node]), 1e3 * np.linalg.norm(u[wall], axis=1).max()
+
+
+def slope_of(folder, path, plates, changes):
+    """dP/d(V/V0) [Pa] about the undeformed phantom."""
+    held = "0,0,0" if plates == "bonded" else "0,free,free"
+    with run("phantom.opts", folder / "pv", PLATES[plates] | changes | {
+            "mesh": path, "analysis": "pv_curve", "pv_low": 0.97, "pv_high": 1.03, "pv_points": 5,
+            "output_fields": "\"\"", "boundary_stage_displacement": held}) as r:
+        return r["pv_curve/slope"][0]
+
+
+def compare_elements(folder, path):
+    """Contour, force, pressure and P-V stiffness of every element on one mesh."""
+    rows = []
+    figure, axis = plt.subplots(figsize=(4.6, 4.4), constrained_layout=True)
+    for element in ("p1", "p1_anp", "p2", "p2_bbar", "p2_anp"):
+        changes, at = {"tissue_element": element}, folder / f"element_{element}"
+        slope = slope_of(folder, path, "slip", changes)
+        with run("phantom.opts", at, changes | {"mesh": path}) as r:
+            p, force = r["history/cavity/pocket/pressure"][:], r["history/boundary/stage/force"][-1, 0]
+            x, tets = r["mesh/coordinates"][:], r["mesh/tets"][:, :4]
+        y = x + field(at, 3)
+        ring = contour(x, wall_nodes(x, tets), CENTRE[1])
+        axis.plot(1e3 * y[np.append(ring, ring[0]), 2], 1e3 * y[np.append(ring, ring[0]), 0], lw=1.2, label=element)
+        rows.append({"element": element, "nodes": len(x), "p3_Pa": f"{p[1]:.0f}", "p6_Pa": f"{p[2]:.0f}",
+                     "p9_Pa": f"{p[3]:.0f}", "F9_N": f"{-force:.3f}", "point_mm": f"{contour_point(at)[0]:.2f}",
+                     "dP/d(V/V0)_kPa": f"{1e-3 * slope:.2f}"})
+    axis.set(xlabel="z [mm]", ylabel="x [mm]", title="Contour at 9 mm", aspect="equal")
+    axis.invert_yaxis()
+    axis.legend(frameon=False, fontsize=8)
+    figure.savefig(folder / "elements.png", dpi=130)
+    plt.close(figure)
+    write_table(folder / "elements.csv", rows)
 
 
 def main():
@@ -91,11 +125,7 @@ def main():
     rows = []
     for name, path in meshes.items():
         for plates, changes in PLATES.items():
-            with run("phantom.opts", folder / "pv", changes | {
-                    "mesh": path, "analysis": "pv_curve", "pv_low": 0.97, "pv_high": 1.03, "pv_points": 5,
-                    "output_fields": "\"\"", "boundary_stage_displacement":
-                        "0,0,0" if plates == "bonded" else "0,free,free"}) as r:
-                slope = r["pv_curve/slope"][0]
+            slope = slope_of(folder, path, plates, {})
             for model in ("linear", "frozen", "follower"):
                 at = folder / f"{name.replace('/', '_')}_{plates}_{model}"
                 with run("phantom.opts", at, changes | {"mesh": path, "cavity_model": model}) as r:
@@ -109,6 +139,8 @@ def main():
                                  "dP/d(V/V0)_kPa": f"{1e-3 * slope:.1f}"})
     write_table(folder / "phantom.csv", rows)
     draw(folder, folder / "h_slip_follower")
+    if not quick:  # the quadratic tets take their time
+        compare_elements(folder, meshes["h"])
     print(f"wrote {folder}/phantom.csv, contours.png and markers.png")
 
 

@@ -124,6 +124,17 @@ void add_insertion(std::vector<OptionSpec>& t)
     OptionSpec spec = withdrawal("insertion_friction_" + std::string(kind) + "_withdraw");
     with_override(t, spec, "<volume>");
   }
+  t.push_back(flag("insertion_radius_correction",
+                   "soften the rows by what a coarse mesh hides of the tissue next to a thin "
+                   "shaft; off for the paper's tables"));
+  t.push_back({"insertion_eta", OptionType::real, "0", "1",
+               "axial force as this part of the sticking one (the papers' law; depends on mesh and "
+               "step, for reproduction only); 0 = off",
+               0.0, 1.0, false, true});
+}
+
+void add_tip(std::vector<OptionSpec>& t)
+{
   with_override(t,
                 not_negative("insertion_puncture_force", "0", "N",
                              "axial force that pierces a surface, an interface of volumes or a "
@@ -137,13 +148,6 @@ void add_insertion(std::vector<OptionSpec>& t)
                            "tissue that carries the tip's force; at least one local edge"));
   t.push_back(not_negative("insertion_tip_friction", "1", "1",
                            "lateral over axial force at which the tip slides on a surface"));
-  t.push_back(flag("insertion_radius_correction",
-                   "soften the rows by what a coarse mesh hides of the tissue next to a thin "
-                   "shaft; off for the paper's tables"));
-  t.push_back({"insertion_eta", OptionType::real, "0", "1",
-               "axial force as this part of the sticking one (the papers' law; depends on mesh and "
-               "step, for reproduction only); 0 = off",
-               0.0, 1.0, false, true});
 }
 
 void add_constraint(std::vector<OptionSpec>& t)
@@ -229,8 +233,8 @@ void add_output(std::vector<OptionSpec>& t)
 std::vector<OptionSpec> build_table()
 {
   std::vector<OptionSpec> t = general_options();
-  for (auto* add : {add_tissue, add_boundary, add_needles, add_insertion, add_cavity_options,
-                    add_constraint, add_compliance, add_output})
+  for (auto* add : {add_tissue, add_boundary, add_needles, add_insertion, add_tip,
+                    add_cavity_options, add_constraint, add_compliance, add_output})
     add(t);
   return t;
 }

@@ -10,6 +10,7 @@
 #include "driver/compliance_options.hpp"
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
+#include "driver/scenario_checks.hpp"
 #include "io/gmsh_reader.hpp"
 #include "mesh/quadratic.hpp"
 
@@ -238,26 +239,6 @@ void add_radius_correction(Scenario& scenario)
   }
 }
 
-void refuse_dashpots_without_time(const Scenario& scenario)
-{
-  if (scenario.time.analysis == Analysis::dynamic || scenario.time.end > 0.0) return;
-  for (const auto& friction : scenario.insertion.friction)
-    if (friction.advance.viscous > 0.0 || friction.withdraw.viscous > 0.0)
-      throw core::option_error(
-          "option -insertion_friction_viscous: one static equilibrium takes no time; give "
-          "-time_end for a quasi-static path");
-}
-
-void add_warnings(Scenario& scenario)
-{
-  for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
-    if (scenario.tissue.materials[i].poisson > 0.45 && !scenario.mesh.quadratic() &&
-        scenario.tissue.dilatation == tissue::Dilatation::pointwise)
-      scenario.warnings.push_back("volume '" + scenario.mesh.volumes[i] +
-                                  "': linear tets lock above a Poisson's ratio of about 0.4; "
-                                  "displacements are too small and pressures wrong");
-}
-
 }  // namespace
 
 Scenario read_scenario(Options& options, const base::Comm& comm)
@@ -278,13 +259,12 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.tissue = read_tissue(options, std::move(materials), scenario.mesh, comm);
   scenario.tissue.dilatation = dilatation;
   scenario.insertion = read_insertion(options, scenario.mesh);
-  refuse_dashpots_without_time(scenario);
   read_compliance(options, scenario);
   add_needles(options, scenario, comm);
   if (options.flag("insertion_radius_correction")) add_radius_correction(scenario);
   read_cavities(options, scenario, comm);
   options.refuse_unread();
-  add_warnings(scenario);
+  check_scenario(scenario);
   return scenario;
 }
 

@@ -63,6 +63,18 @@ Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
   return rest;
 }
 
+/// The group without the nodes that are gone.
+PointGroup renumbered_group(const PointGroup& group, const std::vector<int>& number)
+{
+  PointGroup kept{group.name, {}, {}};
+  const auto now = [&](int node) { return number[static_cast<std::size_t>(node)]; };
+  for (int node : group.nodes)
+    if (now(node) >= 0) kept.nodes.push_back(now(node));
+  for (const auto& [a, b] : group.edges)
+    if (now(a) >= 0 && now(b) >= 0) kept.edges.push_back({now(a), now(b)});
+  return kept;
+}
+
 }  // namespace
 
 Mesh hollow(const Mesh& mesh, const std::string& volume)
@@ -85,15 +97,7 @@ Mesh hollow(const Mesh& mesh, const std::string& volume)
     if (!kept.faces.empty()) rest.surfaces.push_back(std::move(kept));
   }
   for (const PointGroup& point : mesh.points) {
-    PointGroup kept{point.name, {}, {}};
-    for (int node : point.nodes)
-      if (number[static_cast<std::size_t>(node)] >= 0)
-        kept.nodes.push_back(number[static_cast<std::size_t>(node)]);
-    for (const auto& [a, b] : point.edges) {
-      const std::array<int, 2> edge{number[static_cast<std::size_t>(a)],
-                                    number[static_cast<std::size_t>(b)]};
-      if (edge[0] >= 0 && edge[1] >= 0) kept.edges.push_back(edge);
-    }
+    PointGroup kept = renumbered_group(point, number);
     if (!kept.nodes.empty()) rest.points.push_back(std::move(kept));
   }
   std::set<Face> removed;

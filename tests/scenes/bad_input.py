@@ -37,6 +37,15 @@ refuses("bevel beyond a right angle", 64, ["-needle_bevel"], {"-needle_bevel": "
 refuses("negative modulus", 64, ["-tissue_young", "-5"], {"-tissue_young": "-5"})
 refuses("Poisson's ratio of 0.5", 64, ["-tissue_poisson"], {"-tissue_poisson": "0.5"})
 refuses("NaN", 64, ["-tissue_density", "nan"], {"-tissue_density": "nan"})
+refuses("unknown element", 64, ["-tissue_element", "did you mean 'p2"], {"-tissue_element": "p2_ann"})
+refuses("BDF2 in statics", 64, ["-time_scheme bdf2"], {"-time_scheme": "bdf2", "-analysis": "static"})
+refuses("two tangents of linear tissue", 64, ["-tissue_tangent exact"],
+        {"-tissue_tangent": "exact", "-tissue_model": "linear"})
+refuses("locking gauge without cavity", 64, ["-locking_gauge"], {"-locking_gauge": ""})
+refuses("radius correction of the eta law", 64, ["-insertion_radius_correction", "-insertion_eta"],
+        {"-insertion_radius_correction": "", "-insertion_eta": "0.5"})
+refuses("sizes without a target", 64, ["-error_size_field", "-error_target"],
+        {"-error_size_field": "sizes.pos"})
 refuses("words for a number", 64, ["-time_step", "fast"], {"-time_step": "fast"})
 refuses("stale without a factor of our own", 64, ["-compliance_reuse stale", "supernodal"],
         {"-compliance_reuse": "stale", "-compliance_provider": "ksp"})

@@ -123,4 +123,14 @@ for n in ("5", "9"):
 check(1.2 < estimates[0] / estimates[1] < 2.2, f"the estimate falls with the edges {estimates}")
 said = launch({**cube, "-output_dir": os.path.join(folder, "said")}).stdout
 check("times shorter" in said and "estimated error" in said, "the log says how far off the run is")
+# Quadratic tets: ten nodes each, in ParaView's order, with the middles of a straight mesh in the middle.
+curved = completed({**settings, "-tissue_element": "p2", "-time_end": "0.02"})
+with h5py.File(os.path.join(curved, "run.h5")) as run:
+    x, tets = run["mesh/coordinates"][:], run["mesh/tets"][:]
+check(tets.shape[1] == 10, "ten nodes in a quadratic tet")
+ends = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+check(all(np.allclose(x[tets[:, 4 + k]], 0.5 * (x[tets[:, a]] + x[tets[:, b]]))
+          for k, (a, b) in enumerate(ends)), "middles of edges 01 12 20 03 13 23")
+with open(os.path.join(curved, "run.xdmf")) as stream:
+    check('TopologyType="Tetrahedron_10"' in stream.read(), "run.xdmf says Tetrahedron_10")
 finish()

@@ -1,0 +1,54 @@
+#include "driver/scenario_checks.hpp"
+
+namespace trocar::driver {
+namespace {
+
+void refuse_dashpots_without_time(const Scenario& scenario)
+{
+  if (scenario.time.analysis == Analysis::dynamic || scenario.time.end > 0.0) return;
+  for (const auto& friction : scenario.insertion.friction)
+    if (friction.advance.viscous > 0.0 || friction.withdraw.viscous > 0.0)
+      throw core::option_error(
+          "option -insertion_friction_viscous: one static equilibrium takes no time; give "
+          "-time_end for a quasi-static path");
+}
+
+/// What is asked for and could not do anything.
+void refuse_idle(const Scenario& scenario)
+{
+  const auto refuse = [](bool idle, const std::string& why) {
+    if (idle) throw core::option_error("option -" + why);
+  };
+  refuse(scenario.time.second_order && scenario.time.analysis != Analysis::dynamic,
+         "time_scheme bdf2: statics have no time derivatives");
+  refuse(scenario.tissue.tangent == tissue::Tangent::exact &&
+             scenario.tissue.model == tissue::Model::linear,
+         "tissue_tangent exact: linear tissue has one tangent");
+  refuse(scenario.output.locking_gauge && scenario.cavities.cavities.empty(),
+         "locking_gauge: there is no cavity (-cavities)");
+  refuse(scenario.insertion.radius_correction && scenario.needles.empty(),
+         "insertion_radius_correction: there is no needle (-needles)");
+  refuse(scenario.insertion.radius_correction && scenario.insertion.eta > 0.0,
+         "insertion_radius_correction: the eta law has a softness of its own (-insertion_eta)");
+}
+
+void add_warnings(Scenario& scenario)
+{
+  for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
+    if (scenario.tissue.materials[i].poisson > 0.45 && !scenario.mesh.quadratic() &&
+        scenario.tissue.dilatation == tissue::Dilatation::pointwise)
+      scenario.warnings.push_back("volume '" + scenario.mesh.volumes[i] +
+                                  "': linear tets lock above a Poisson's ratio of about 0.4; "
+                                  "displacements are too small and pressures wrong");
+}
+
+}  // namespace
+
+void check_scenario(Scenario& scenario)
+{
+  refuse_dashpots_without_time(scenario);
+  refuse_idle(scenario);
+  add_warnings(scenario);
+}
+
+}  // namespace trocar::driver
