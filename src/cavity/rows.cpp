@@ -94,8 +94,9 @@ CavityRows Cavities::add_rows(const State& state, const Shape& shape, const Owne
 /// δ = (V - V_law(p))/area, linear in the pressures about those of the rows.
 void Cavities::set_gaps(const CavityRows& rows, constraint::Set& set) const
 {
-  set.couplings().clear();
   const auto count = static_cast<int>(rows.cavity.size());
+  if (count == 0) return;
+  std::erase_if(set.couplings(), [&](const auto& c) { return c.i >= rows.first; });
   for (int k = 0; k < count; ++k) {
     const int i = rows.cavity[index(k)];
     double gap = rows.held[k] - rows.fluid.volume[i];

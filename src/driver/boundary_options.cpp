@@ -2,6 +2,7 @@
 
 #include "core/csv.hpp"
 #include "driver/option_source.hpp"
+#include "mesh/quadratic.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -39,13 +40,21 @@ std::map<int, Vec3> read_field(const std::string& file, const std::string& group
   for (const auto& row : table.rows)
     by_tag[static_cast<long long>(row[0])] = Vec3(row[1], row[2], row[3]);
   std::map<int, Vec3> field;
+  std::vector<int> missing;
   for (int node : mesh::group_nodes(mesh, group)) {
-    const long long tag = mesh.node_tag[static_cast<std::size_t>(node)];
-    const auto at = by_tag.find(tag);
-    if (at == by_tag.end())
-      throw core::data_error(file + ": node " + std::to_string(tag) + " of group '" + group +
-                             "' is missing");
-    field.emplace(node, at->second);
+    const auto at = by_tag.find(mesh.node_tag[static_cast<std::size_t>(node)]);
+    if (at != by_tag.end())
+      field.emplace(node, at->second);
+    else
+      missing.push_back(node);
+  }
+  for (int node : missing) {  // the middle of an edge may take the mean of its ends
+    const auto ends = mesh::ends_of_middle(mesh, node);
+    if (!ends || !field.count((*ends)[0]) || !field.count((*ends)[1]))
+      throw core::data_error(file + ": node " +
+                             std::to_string(mesh.node_tag[static_cast<std::size_t>(node)]) +
+                             " of group '" + group + "' is missing");
+    field[node] = 0.5 * (field[(*ends)[0]] + field[(*ends)[1]]);
   }
   return field;
 }

@@ -40,8 +40,8 @@ void read_compliance(core::Options& options, Scenario& scenario)
   const bool turns = tissue.model == tissue::Model::corotational && tissue.lag_tolerance > 0.0;
   if (tissue.reuse == solve::Reuse::stale && !turns)
     throw core::option_error(
-        "option -compliance_reuse stale: columns are exact with linear tissue, "
-        "-compliance_lag 0 and -insertion_eta");
+        "option -compliance_reuse stale: only corotational tissue with a lag has stale columns, "
+        "without -insertion_eta");
 }
 
 }  // namespace trocar::driver

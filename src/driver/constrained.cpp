@@ -57,7 +57,8 @@ void Simulation::meet_laws(const tissue::FreeMotion& tissue, const fem::OwnedFie
     if (pass.trouble && motion.approach &&
         tissue_.lags()) {  // try with the factor of the operator itself
       tissue_.give_up(motion);
-      pass.trouble.reset();
+      pass.trouble = motion.trouble;
+      if (pass.trouble) return;
       continue;
     }
     if (pass.trouble) return;
@@ -80,17 +81,20 @@ void Simulation::meet_stale_laws(const tissue::FreeMotion& tissue, const fem::Ow
     do {
       u = tissue_.finish(motion, {}, {});
       ++report.passes;
-    } while (!tissue_.converged(motion, u, {}, pass.tolerance));
+    } while (!tissue_.converged(motion, u, {}, pass.tolerance) && !motion.trouble);
+    pass.trouble = motion.trouble;
   };
   tissue::FreeMotion motion = tissue;
   tissue_.start_from(motion, {}, space_.zero());
   alone(motion);
+  if (pass.trouble) return;
   get_compliance(pass, report);
   pass.lambda = {};
   const core::VecX free = solve::read(pass.probes, {u.value - start.value}, space_);
   pass.trouble = solve_constraints(free, last, pass, report);
   if (pass.trouble) return;
   alone(tissue_.pushed(u, push_of(pass).forces(pass.lambda.lambda)));
+  if (pass.trouble) return;
   const core::VecX moved = solve::read(pass.probes, {u.value - start.value}, space_);
   const core::VecX thought = free + pass.C * pass.forces;
   const core::VecX off = constraint::row_displacements(pass.rows.set, moved - thought);

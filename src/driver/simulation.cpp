@@ -133,7 +133,8 @@ Simulation::Pass Simulation::linearised_step(const State& past, const core::Time
   fem::Load load;
   if (cavities_) load = cavities_->load(next.cavities, walls, now);
   const tissue::FreeMotion tissue =
-      tissue_.free_motion(past.tissue, next.tissue.u, now, load);  // 2 each body alone
+      tissue_.free_motion(past.tissue, next.tissue.u, now, load,  // 2 each body alone
+                          std::isfinite(residual));
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.

@@ -23,11 +23,14 @@ void extrapolate(double c, const needle::NeedleState& before, needle::NeedleStat
 
 // BDF2 with a varying step is backward Euler from an extrapolated past: with r = h/h_before,
 //   h u' = lead (u - û),  lead = (1 + 2r)/(1 + r),  û = u_n + r²/(1 + 2r) (u_n - u_before),
-// and the same for v' (Hairer, Norsett and Wanner 1993, III.5). The first step is backward Euler's.
+// and the same for v' (Hairer, Norsett and Wanner 1993, III.5). The first step is backward Euler's,
+// and one that is much longer than that before.
 const State& Simulation::past_of(const State& old, core::TimeStep& now, State& extrapolated) const
 {
   if (now.is_static || !old.before) return old;
   const double r = now.h / old.before->h;
+  constexpr double longest = 2.0;  // BDF2 is stable up to 1 + √2
+  if (r > longest) return old;
   now.lead = (1.0 + 2.0 * r) / (1.0 + r);
   const double c = r * r / (1.0 + 2.0 * r);
   extrapolated.tissue = old.tissue;

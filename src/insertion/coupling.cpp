@@ -113,14 +113,13 @@ std::vector<bool> Insertion::lateral_points(const InsertionState& state) const
 }
 
 PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
-                                    const Friction& friction, double length,
+                                    const Friction& friction, double length, double held,
                                     const needle::Shaft& shaft, const Deformed& tissue, int body,
                                     double h, constraint::Set& set) const
 {
   PointRows mine;
   constraint::Row row;
   const Site& site = path.sites[static_cast<std::size_t>(point.site)];
-  const RadiusCorrection::Softness radius = radius_softness(site, body, length);
   row.anchor = site.anchor;
   row.body = body;
   row.point = set.size();
@@ -133,7 +132,7 @@ PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, co
     row.start = start;
   };
   if (lateral) {
-    row.softness = radius.lateral;
+    row.softness = radius_softness(site, body, held).lateral;
     mine.first = set.size();
     aim(on_shaft.normal_1, point.lambda[0]);
     set.add(row);
@@ -143,7 +142,7 @@ PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, co
   row.softness = 0.0;
   aim(on_shaft.tangent, point.lambda[2]);
   row.gap = mine.slid = on_shaft.s - point.needle_arc;
-  add_axial_rows(point, friction, h, radius.axial, row, mine, set);
+  add_axial_rows(point, friction, h, radius_softness(site, body, length).axial, row, mine, set);
   return mine;
 }
 
@@ -154,10 +153,15 @@ CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaf
   CouplingRows rows;
   const core::MatX tributary = tributary_lengths(state);
   const std::vector<bool> lateral = lateral_points(state);
-  for (std::size_t k = 0; k < state.points.size(); ++k)
-    rows.points.push_back(add_point_rows(
-        state.points[k], lateral[k], state.path, friction_of(state, tributary, k),
-        tributary.row(static_cast<Eigen::Index>(k)).sum(), shaft, tissue, body, h, set));
+  double held = 0.0;  // of the path by the next point that holds the shaft laterally [m]
+  for (std::size_t k = 0; k < state.points.size(); ++k) {
+    const double own = tributary.row(static_cast<Eigen::Index>(k)).sum();
+    held += own;
+    rows.points.push_back(add_point_rows(state.points[k], lateral[k], state.path,
+                                         friction_of(state, tributary, k), own, held, shaft, tissue,
+                                         body, h, set));
+    if (lateral[k]) held = 0.0;
+  }
   if (state.tip.pressed)
     rows.tip = add_tip_rows(state.tip, state.phase == Phase::contact, resistance(state),
                             settings_.tip.friction, shaft, tissue, body, set);

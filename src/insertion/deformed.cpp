@@ -75,9 +75,11 @@ std::optional<Vec3> Deformed::reference_place(const Vec3& x, const Vec3& guess) 
   return search(candidates(x, x));
 }
 
-/// Where the segment P Q goes through the face of a quadratic tet by which it goes through its
-/// corners' tet at `t`: the zero of that coordinate along it, by the secant.
-double Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t) const
+/// Where the segment P Q goes through the face of a quadratic tet by which it goes into its
+/// corners' tet at `t`, `stretch` long: the zero of that coordinate along it, by the secant; t
+/// itself when there is none near.
+double Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t,
+                                     double stretch) const
 {
   const mesh::TetPositions x = positions_now(tet);
   Eigen::Index face = 0;
@@ -86,7 +88,7 @@ double Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, doub
     return mesh::local_coordinates(x, P + s * (Q - P))[face];
   };
   constexpr int most = 10;
-  double before = t, after = t + 1e-3;
+  double before = t, after = t + 1e-3 * stretch;
   double at_before = beyond(before), at_after = beyond(after);
   for (int k = 0; k < most && std::abs(at_before) > 1e-12 && at_after != at_before; ++k) {
     const double next = before - at_before * (after - before) / (at_after - at_before);
@@ -95,7 +97,8 @@ double Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, doub
     before = next;
     at_before = beyond(before);
   }
-  return before;
+  const bool found = std::abs(at_before) <= 1e-9 && std::abs(before - t) <= stretch;
+  return found ? before : t;
 }
 
 Vec3 Deformed::reference_place_continued(const Vec3& x, int tet) const
@@ -132,7 +135,7 @@ std::optional<Vec3> Deformed::entry(const Vec3& P, const Vec3& Q) const
   }
   if (!first) return std::nullopt;
   if (mesh_->quadratic() && first->low > 0.0) {
-    const double t = through_curved_face(first->tet, P, Q, first->low);
+    const double t = through_curved_face(first->tet, P, Q, first->low, first->high - first->low);
     return pull_back(first->tet, P + std::max(t, 0.0) * (Q - P));
   }
   return pull_back(first->tet, P + std::max(first->low, 0.0) * (Q - P));

@@ -36,7 +36,7 @@ class Deformed
  private:
   std::array<Vec3, 4> corners_now(int tet) const;
   mesh::TetPositions positions_now(int tet) const;
-  double through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t) const;
+  double through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t, double stretch) const;
   std::vector<int> candidates(const Vec3& low, const Vec3& high) const;
   Vec3 pull_back(int tet, const Vec3& x) const;
 

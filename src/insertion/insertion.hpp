@@ -155,8 +155,9 @@ class Insertion
   std::vector<bool> lateral_points(const InsertionState& state) const;
   RadiusCorrection::Softness radius_softness(const Site& site, int body, double length) const;
   PointRows add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
-                           const Friction& friction, double length, const needle::Shaft& shaft,
-                           const Deformed& tissue, int body, double h, constraint::Set& set) const;
+                           const Friction& friction, double length, double held,
+                           const needle::Shaft& shaft, const Deformed& tissue, int body, double h,
+                           constraint::Set& set) const;
   void add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
                       double radius_softness, constraint::Row row, PointRows& mine,
                       constraint::Set& set) const;

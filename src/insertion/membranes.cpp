@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/quadratic.hpp"
+
 namespace trocar::insertion {
 
 Membranes::Membranes(const mesh::Mesh& mesh, PunctureSettings settings)
@@ -28,7 +30,7 @@ double Membranes::of_surface(int tet, const Vec3& X) const
 {
   if (tet < 0) return -2.0;
   const mesh::Tet& nodes = mesh_->tets[static_cast<std::size_t>(tet)];
-  const Eigen::Vector4d weight = mesh::barycentric(mesh::corners(*mesh_, tet), X);
+  const Eigen::Vector4d weight = mesh::local_coordinates(mesh::positions(*mesh_, tet), X);
   double found = -2.0;
   for (std::size_t opposite = 0; opposite < 4; ++opposite) {
     if (std::abs(weight[static_cast<Eigen::Index>(opposite)]) > 1e-5) continue;

@@ -110,7 +110,8 @@ std::vector<Candidate> candidates(const mesh::Mesh& mesh, const std::vector<Pass
   if (!mesh.quadratic()) return all;
   for (const Passage& p : passages) {
     const double middle = 0.5 * (p.low + p.high);
-    if (middle > 0.0 && middle <= 1.0) all.push_back({middle, p.tet, p.tolerance});
+    if (middle >= -p.tolerance && middle <= 1.0 + p.tolerance)
+      all.push_back({std::clamp(middle, 0.0, 1.0), p.tet, p.tolerance});
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
   return all;

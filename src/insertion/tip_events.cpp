@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "insertion/insertion.hpp"
+#include "mesh/quadratic.hpp"
 
 // What the tip meets and what becomes of it: borders, pressing, sliding, cutting.
 namespace trocar::insertion {
@@ -10,7 +11,7 @@ namespace {
 Vec3 face_normal(const mesh::Mesh& mesh, int tet, const Vec3& X)
 {
   const auto corner = mesh::corners(mesh, tet);
-  const Eigen::Vector4d weight = mesh::barycentric(corner, X);
+  const Eigen::Vector4d weight = mesh::local_coordinates(mesh::positions(mesh, tet), X);
   Eigen::Index opposite = 0;
   weight.minCoeff(&opposite);
   const auto at = [&](Eigen::Index k) {

@@ -88,6 +88,11 @@ void elements_of(const std::string& file, const Group& group, int type,
       if (types[k] == type) {
         tags.insert(tags.end(), element_tags[k].begin(), element_tags[k].end());
         corners.insert(corners.end(), node_tags[k].begin(), node_tags[k].end());
+      } else if (!element_tags[k].empty() && group.dim > 0 && group.dim < 3) {
+        throw core::data_error(file + ": physical group '" + group.name + "' holds element " +
+                               std::to_string(element_tags[k].front()) +
+                               " of another order than the tetrahedra, or no simplex (Gmsh type " +
+                               std::to_string(types[k]) + ")");
       } else if (!element_tags[k].empty() && group.dim == 3) {
         throw core::data_error(file + ": physical volume '" + group.name + "' holds element " +
                                std::to_string(element_tags[k].front()) +

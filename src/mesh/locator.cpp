@@ -33,7 +33,12 @@ Locator::Locator(const Mesh& mesh) : mesh_(&mesh)
   entries.reserve(mesh.tets.size());
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const TetPositions p = positions(mesh, t);
-    const Vec3 low = p.rowwise().minCoeff(), high = p.rowwise().maxCoeff();
+    Vec3 low = p.rowwise().minCoeff(), high = p.rowwise().maxCoeff();
+    if (!is_straight(p)) {  // a curved face may go a little beyond its nodes
+      const Vec3 beyond = 0.1 * (high - low);
+      low -= beyond;
+      high += beyond;
+    }
     entries.emplace_back(Box(point(low), point(high)), t);
     longest_edge_ = std::max(longest_edge_, (high - low).norm());
   }

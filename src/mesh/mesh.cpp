@@ -38,6 +38,16 @@ void broadcast_points(std::vector<Vec3>& x, const base::Comm& comm)
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = Eigen::Map<const Vec3>(&flat[3 * i]);
 }
 
+void check_middles(const Mesh& mesh)
+{
+  for (std::size_t t = 0; t < mesh.middles.size(); ++t)
+    for (std::size_t k = 0; k < 6; ++k)
+      if (mesh.middle_of(mesh.tets[t][tet_edges[k][0]], mesh.tets[t][tet_edges[k][1]]) !=
+          mesh.middles[t][k])
+        throw core::data_error(mesh.file + ": tetrahedron " + std::to_string(mesh.elem_tag[t]) +
+                               " and a neighbour have different middle nodes on an edge");
+}
+
 }  // namespace
 
 void Mesh::index_middles()
@@ -152,6 +162,7 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
 
 void validate(const Mesh& mesh)
 {
+  check_middles(mesh);
   if (mesh.tets.empty())
     throw core::data_error(mesh.file + ": no tetrahedra in any physical volume");
   for (int i = 0; i < mesh.node_count(); ++i)

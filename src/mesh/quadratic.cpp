@@ -53,6 +53,15 @@ void make_quadratic(Mesh& mesh)
   check_surface_edges(mesh);
 }
 
+std::optional<std::array<int, 2>> ends_of_middle(const Mesh& mesh, int node)
+{
+  for (std::size_t t = 0; t < mesh.middles.size(); ++t)
+    for (std::size_t k = 0; k < 6; ++k)
+      if (mesh.middles[t][k] == node)
+        return std::array<int, 2>{mesh.tets[t][tet_edges[k][0]], mesh.tets[t][tet_edges[k][1]]};
+  return std::nullopt;
+}
+
 void check_surface_edges(const Mesh& mesh)
 {
   if (!mesh.quadratic()) return;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "mesh/mesh.hpp"
 
 namespace trocar::mesh {
@@ -22,6 +24,9 @@ std::vector<int> nodes_of(const Mesh& mesh, const Face& face);
 /// Makes a mesh of linear tets quadratic: a node on the middle of every edge, tagged on from the
 /// largest tag in the order of the edges' corners. Straight; nothing to do when it is quadratic.
 void make_quadratic(Mesh& mesh);
+
+/// The corners between which a node is the middle; nothing for a corner. Looks through all tets.
+std::optional<std::array<int, 2>> ends_of_middle(const Mesh& mesh, int node);
 
 /// Throws Failure (65) when a surface of a quadratic mesh has an edge that no tet has.
 void check_surface_edges(const Mesh& mesh);

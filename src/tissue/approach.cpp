@@ -26,15 +26,14 @@ void Tissue::factor(const std::vector<Mat3>& R)
 }
 
 /// Begins where the velocity leads.
-void Tissue::begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                            const OwnedField& r, const fem::Load& more, double least,
-                            FreeMotion& motion)
+void Tissue::begin_approach(const TissueState& old, const TimeStep& step, const OwnedField& r,
+                            const fem::Load& more, double least, bool goes_on, FreeMotion& motion)
 {
   Approach approach;
   approach.stiffness = more.stiffness;
   approach.least = least;
   OwnedField ahead = space_->zero();
-  if (step.t > 0.0 && space_->comm().all(iterate.value == old.u.value)) {
+  if (step.t > 0.0 && !goes_on) {
     ahead.value = step.h * old.v.value;
     fixed_.clear(ahead);
   }

@@ -93,34 +93,34 @@ void Tissue::use_operator(const Configuration& at, const TimeStep& step)
   }
 }
 
-bool Tissue::linearise_at(const OwnedField& iterate, const OwnedField& start)
+/// `goes_on`: from the last linearisation, whose pressures then lead to those of the tangent.
+bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 {
-  const bool goes_on = !at_.G.empty() && u_at_.value.size() == iterate.value.size() &&
-                       !space_->comm().all(iterate.value == start.value);
+  const bool led = goes_on && exact_at_;
   core::VecX p;
-  if (goes_on)
-    p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
-  if (!configure(space_->with_ghosts(iterate), at_)) {
-    at_.G.clear();
-    return false;
-  }
-  if (at_.G.empty()) return true;
-  u_at_ = iterate;
-  if (goes_on) at_.p = std::move(p);
-  return true;
+  if (led) p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
+  const bool upright = configure(space_->with_ghosts(iterate), at_);
+  exact_at_ = upright && exact_tangent();
+  if (exact_at_) u_at_ = iterate;
+  if (led && upright) at_.p = std::move(p);
+  return upright;
+}
+
+bool Tissue::exact_tangent() const
+{
+  return settings_.model == Model::neo_hookean ||
+         (settings_.model == Model::corotational && settings_.tangent == Tangent::exact);
 }
 
 /// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Agreed by
 /// all ranks, as the failures of a factor are. Otherwise the operator fails for good.
 std::optional<std::string> Tissue::why_not(const std::function<void()>& make_operator)
 {
-  const bool rotated =
-      settings_.model != Model::neo_hookean && settings_.tangent == Tangent::rotated;
   try {
     make_operator();
   } catch (const core::Failure& failure) {
-    if (rotated || settings_.model == Model::linear || failure.code() != core::ExitCode::solver)
-      throw;
+    if (!exact_tangent() || failure.code() != core::ExitCode::solver) throw;
+    current_->older = false;
     current_->inverse_h = -1.0;
     current_->uses = 0;
     return "the exact tangent has no factor (an instability, or too large a step): " +
@@ -160,9 +160,9 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Con
 }
 
 FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
-                               const TimeStep& step, const fem::Load& more)
+                               const TimeStep& step, const fem::Load& more, bool goes_on)
 {
-  if (!linearise_at(iterate, old.u))
+  if (!linearise_at(iterate, goes_on))
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
   if (auto trouble = why_not([&] { use_operator(at_, step); }))
     return {space_->zero(), {}, std::move(trouble)};
@@ -188,7 +188,7 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
   if (current_->older || more.stiffness)
-    begin_approach(old, iterate, step, r, more, scale, motion);
+    begin_approach(old, step, r, more, scale, goes_on, motion);
   else
     motion.half = begin(r);
   return motion;

@@ -74,10 +74,10 @@ class Tissue
 
   /// Linearises at `iterate` within the step that began at `old` and solves for the motion without
   /// constraints, under loads that are linearised there as well; those that follow the tissue make
-  /// it an approach. Linear tissue keeps one assembled and factored operator per distinct h.
-  /// Collective.
+  /// it an approach. `goes_on`: within the step from the last linearisation. Linear tissue keeps
+  /// one assembled and factored operator per distinct h. Collective.
   FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                         const fem::Load& more = {});
+                         const fem::Load& more = {}, bool goes_on = false);
 
   /// False when a displacement is not finite or turns a corotational element inside out.
   /// Collective.
@@ -177,15 +177,16 @@ class Tissue
     std::unique_ptr<solve::StepSolver> solver;
   };
 
-  bool linearise_at(const OwnedField& iterate, const OwnedField& start);
+  bool linearise_at(const OwnedField& iterate, bool goes_on);
+  bool exact_tangent() const;
   void use_operator(const Configuration& at, const TimeStep& step);
   void factor(const std::vector<Mat3>& R);
   std::optional<std::string> why_not(const std::function<void()>& make_operator);
   bool factor_worn() const;
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
                                  const std::vector<Mat3>& R_factor) const;
-  void begin_approach(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                      const OwnedField& r, const fem::Load& more, double least, FreeMotion& motion);
+  void begin_approach(const TissueState& old, const TimeStep& step, const OwnedField& r,
+                      const fem::Load& more, double least, bool goes_on, FreeMotion& motion);
   void change_rows(Approach& approach, const OwnedField& d, const OwnedField& A_d,
                    const core::VecX& more, const OwnedField& pushed, const Push& push,
                    bool same_laws) const;
@@ -209,7 +210,8 @@ class Tissue
   fem::BlockMatrix values_;
   double smallest_scale_ = 0.0;  ///< 1e-5 E V^(2/3) [N]
   Configuration at_;             ///< of the present linearisation
-  OwnedField u_at_;              ///< where that is, kept with exact tangents [m]
+  OwnedField u_at_;              ///< where that is, with an exact tangent [m]
+  bool exact_at_ = false;        ///< it is that of an exact tangent; equal on all ranks
   OwnedField weight_;            ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Dofs that a prescribed displacement holds: owned dof and which condition.
