@@ -39,7 +39,7 @@ Every case must be **right** or **rejected**. Both are checked; nothing may pass
   solver does not reach 1e-9 m within its iterations.
 - Bold outcomes are failures of the test.
 
-Unless the scenario says otherwise: a block of 6 x 4 x 4 cm (480 tets, 5 kPa, Poisson's ratio 0.4,
+Unless the scenario says otherwise: a block of 6 x 4 x 4 cm (480 linear tets, 5 kPa, Poisson's ratio 0.4,
 corotational, quasi-static, lower side fixed), a steel beam needle of 8 cm and 0.5 mm radius, 30 mm
 deep at 20 mm/s in steps of 1 mm, friction τ = 20 N/m. "rank/rows" are the largest of the run.
 

@@ -78,6 +78,8 @@ def attempt(settings, ranks=1, timeout=120):
     harness_runs = len(os.listdir(harness.FOLDER))
     folder = os.path.join(harness.FOLDER, f"stress_{harness_runs}")
     words = ["-output_dir", folder]
+    if "tissue_element" not in settings:  # the table is of linear tets
+        words += ["-tissue_element", "p1"]
     for name, value in settings.items():
         words += ["-" + name] + ([str(value)] if value != "" else [])
     try:
