@@ -33,14 +33,18 @@ fem::ElementBlocks<N> operator_blocks(double lambda, double mu, const fem::Point
   std::array<std::array<Spread, N>, points> spread;
   std::array<Eigen::Matrix<double, 3, N>, points> g;
   std::array<double, points> lambda_V, mu_V;
-  Eigen::Matrix<double, N, N> equal = scale_m * mass;
+  Eigen::Matrix<double, N, N> products;  // Σ μV gradients
   for (std::size_t q = 0; q < points; ++q) {
     g[q] = R[q] * shape[q].gradient;
     for (std::size_t a = 0; a < N; ++a)
       spread[q][a] = Spread(g[q].col(static_cast<Eigen::Index>(a)));
     lambda_V[q] = lambda * shape[q].volume;
     mu_V[q] = mu * shape[q].volume;
-    equal += mu_V[q] * shape[q].gradient.transpose() * shape[q].gradient;
+    const Eigen::Matrix<double, 3, N> scaled = mu_V[q] * shape[q].gradient;
+    if (q == 0)
+      products.noalias() = shape[q].gradient.transpose() * scaled;
+    else
+      products.noalias() += shape[q].gradient.transpose() * scaled;
   }
   const Spread::Head diagonal(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0);
   fem::ElementBlocks<N> blocks;
@@ -48,8 +52,9 @@ fem::ElementBlocks<N> operator_blocks(double lambda, double mu, const fem::Point
     const bool other = slots[p] & 1;
     const int a = fem::block_pairs<N>[p][other ? 1 : 0];
     const int b = fem::block_pairs<N>[p][other ? 0 : 1];
-    blocks[p].head = equal(a, b) * diagonal;
-    blocks[p].last = equal(a, b);
+    const double equal = scale_m * mass(a, b) + products(a, b);
+    blocks[p].head = equal * diagonal;
+    blocks[p].last = equal;
     for (std::size_t q = 0; q < points; ++q) {
       const Spread& A = spread[q][static_cast<std::size_t>(a)];
       const Spread& B = spread[q][static_cast<std::size_t>(b)];

@@ -150,7 +150,7 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
   scatter(force, e, internal);
   if (motion.a.value.size() == 0) return;
   const Nodal w = nodal(motion.a, e) + m.rayleigh_mass * v;
-  scatter(m.density * w * unit_mass(e), e, inertia);
+  scatter(m.density * mass_factor(e) * w * mass_form(e), e, inertia);
 }
 
 template <int N>
@@ -183,7 +183,7 @@ OwnedField ElementsOf<N>::operate(const Configuration& at, double inverse_h,
     const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
     const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h * m.density;
     const Nodal w = nodal(d, e);
-    Nodal force = scale_m * w * unit_mass(e);
+    Nodal force = scale_m * mass_factor(e) * w * mass_form(e);
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
       Mat3 P = increment(at, e, point, gradient(w, point));
       if (averaged()) {
@@ -226,7 +226,7 @@ TetWork ElementsOf<N>::work(const Configuration& at, const Kinematics& motion) c
                                       (m.mu() * by.cwiseProduct(D).sum() + p_rate[i] * rate[i]);
     }
     if (!moves) continue;
-    const double inertia = m.density * v.cwiseProduct(v * unit_mass(e)).sum();
+    const double inertia = m.density * mass_factor(e) * v.cwiseProduct(v * mass_form(e)).sum();
     work.kinetic += 0.5 * inertia;
     work.damping_power_mass += m.rayleigh_mass * inertia;
   }
@@ -273,7 +273,7 @@ template <int N>
 void ElementsOf<N>::add_weight(const core::Vec3& gravity, OwnedField& force) const
 {
   for (std::size_t e = 0; e < tets(); ++e) {
-    const Eigen::Matrix<double, 1, N> share = unit_mass(e).colwise().sum();
+    const Eigen::Matrix<double, 1, N> share = mass_factor(e) * mass_form(e).colwise().sum();
     scatter(material(e).density * gravity * share, e, force);
   }
 }

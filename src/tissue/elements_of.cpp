@@ -99,16 +99,6 @@ void ElementsOf<N>::measure_masses(const mesh::Mesh& mesh)
   for (auto& [e, mass] : curved_mass_) lump(mass);
 }
 
-template <int N>
-typename ElementsOf<N>::Scalar ElementsOf<N>::unit_mass(std::size_t e) const
-{
-  if constexpr (N == 10) {
-    const auto curved = curved_mass_.find(e);
-    if (curved != curved_mass_.end()) return curved->second;
-  }
-  return volume_[e] * straight_mass_;
-}
-
 /// F of `count` points, one per lane; the last one fills the rest.
 template <int N>
 void ElementsOf<N>::gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
@@ -223,8 +213,9 @@ void ElementsOf<N>::assemble(const Configuration& at, double inverse_h,
     const fem::PointShape<N>* shape = &shapes_[points * e];
     const Mat3* R = &at.R[points * e];
     const double lambda = exact() ? 0.0 : scale_k * lambda_at_point(m);
-    fem::ElementBlocks<N> blocks = operator_blocks<N>(lambda, exact() ? 0.0 : scale_k * m.mu(),
-                                                      shape, R, unit_mass(e), scale_m, slots);
+    fem::ElementBlocks<N> blocks =
+        operator_blocks<N>(lambda, exact() ? 0.0 : scale_k * m.mu(), shape, R, mass_form(e),
+                           scale_m * mass_factor(e), slots);
     for (std::size_t q = 0; exact() && q < points; ++q)
       add_tangent<N>(
           shape[q], scale_k, [&](const Mat3& D) { return increment(at, e, points * e + q, D); },

@@ -75,8 +75,17 @@ class ElementsOf final : public Elements
     return exact() ? energy::dilatation_gradient(settings_.model, at.R[point], at.G[point])
                    : at.R[point];
   }
-  /// Mass matrix of the tet over its ρ [m³].
-  Scalar unit_mass(std::size_t e) const;
+  /// Mass matrix of a tet over its ρ [m³]: a form and its factor.
+  const Scalar& mass_form(std::size_t e) const
+  {
+    if (N == 4 || curved_mass_.empty()) return straight_mass_;
+    const auto curved = curved_mass_.find(e);
+    return curved == curved_mass_.end() ? straight_mass_ : curved->second;
+  }
+  double mass_factor(std::size_t e) const
+  {
+    return &mass_form(e) == &straight_mass_ ? volume_[e] : 1.0;
+  }
   void gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
                         core::PolarBatch::Matrix& G) const;
   void measure_masses(const mesh::Mesh& mesh);
