@@ -5,6 +5,7 @@
 
 #include "core/words.hpp"
 #include "driver/stress_fields.hpp"
+#include "fem/shape.hpp"
 #include "io/size_field.hpp"
 #include "mesh/quadratic.hpp"
 
@@ -22,31 +23,14 @@ double complementary(const tissue::Material& m, const Six& s, const Six& t)
          m.young;
 }
 
-/// ∫ N_a N_b over V of a straight tet with n nodes.
-double mass(Eigen::Index n, Eigen::Index a, Eigen::Index b)
-{
-  if (n == 4) return a == b ? 0.1 : 0.05;
-  const auto ends = [](Eigen::Index k) { return mesh::tet_edges[static_cast<std::size_t>(k - 4)]; };
-  const auto on = [&](Eigen::Index corner, Eigen::Index middle) {
-    const auto [i, j] = ends(middle);
-    return static_cast<std::size_t>(corner) == i || static_cast<std::size_t>(corner) == j;
-  };
-  if (a < 4 && b < 4) return (a == b ? 6.0 : 1.0) / 420.0;
-  if (a < 4) return (on(a, b) ? -4.0 : -6.0) / 420.0;
-  if (b < 4) return mass(n, b, a);
-  if (a == b) return 32.0 / 420.0;
-  const auto [i, j] = ends(a);
-  const bool touch = on(static_cast<Eigen::Index>(i), b) || on(static_cast<Eigen::Index>(j), b);
-  return (touch ? 16.0 : 8.0) / 420.0;
-}
-
 /// ∫ |Σ N_a d_a|² of nodal differences d_a, in the norm above.
+template <int N>
 double integral(const tissue::Material& m, const NodalStress& d, double volume)
 {
+  static const Eigen::Matrix<double, N, N> mass = fem::straight_mass<N>();
   double sum = 0.0;
-  for (Eigen::Index a = 0; a < d.cols(); ++a)
-    for (Eigen::Index b = 0; b < d.cols(); ++b)
-      sum += mass(d.cols(), a, b) * complementary(m, d.col(a), d.col(b));
+  for (int a = 0; a < N; ++a)
+    for (int b = 0; b < N; ++b) sum += mass(a, b) * complementary(m, d.col(a), d.col(b));
   return volume * sum;
 }
 
@@ -63,8 +47,9 @@ VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Material>
       NodalStress d = -stress_at_nodes(mesh, field, t);
       Eigen::Index a = 0;
       for (int node : mesh::nodes_of(mesh, t)) d.col(a++) += means.segment<6>(6 * node);
-      errors[t] =
-          integral(materials[static_cast<std::size_t>(region)], d, mesh::tet_volume(mesh, t));
+      const tissue::Material& m = materials[static_cast<std::size_t>(region)];
+      const double volume = mesh::tet_volume(mesh, t);
+      errors[t] = mesh.quadratic() ? integral<10>(m, d, volume) : integral<4>(m, d, volume);
     }
   }
   return errors;

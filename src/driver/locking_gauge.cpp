@@ -5,23 +5,32 @@
 
 namespace trocar::driver {
 
-double wall_compliance(const mesh::Mesh& mesh, const tissue::TissueSettings& settings,
-                       const cavity::CavitySettings& cavity, const base::Comm& comm)
+namespace {
+
+/// dV/dp [m³/Pa] of every cavity's wall, the others left empty. Collective.
+std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSettings settings,
+                                     const std::vector<cavity::CavitySettings>& cavities,
+                                     const base::Comm& comm)
 {
-  tissue::TissueSettings at_rest = settings;
-  at_rest.model = tissue::Model::linear;
-  at_rest.pinned.clear();
-  core::Ledger ledger;  // not of the run
+  settings.model = tissue::Model::linear;
+  settings.pinned.clear();
+  core::Ledger ledger;
   const fem::Space space(mesh, mesh::partition_nodes(mesh, comm), comm,
-                         tissue::rings(at_rest.dilatation));
-  tissue::Tissue tissue(mesh, space, at_rest, ledger);
+                         tissue::rings(settings.dilatation));
+  tissue::Tissue tissue(mesh, space, std::move(settings), ledger);
   tissue::require_supports(tissue.fixed(), mesh);
   tissue.prepare({0.0, 1.0, true});
-  const cavity::Wall wall(mesh, cavity.surface, cavity.caps);
-  const fem::OwnedField push =
-      wall.to_nodes(law::volume_gradient(wall.surface(), wall.undeformed()), space);
-  return space.dot(push, tissue.answer(push));
+  std::vector<double> compliances;
+  for (const cavity::CavitySettings& cavity : cavities) {
+    const cavity::Wall wall(mesh, cavity.surface, cavity.caps);
+    const fem::OwnedField push =
+        wall.to_nodes(law::volume_gradient(wall.surface(), wall.undeformed()), space);
+    compliances.push_back(space.dot(push, tissue.answer(push)));
+  }
+  return compliances;
 }
+
+}  // namespace
 
 void report_locking(const Simulation& simulation, Recorder& recorder, const Log& log)
 {
@@ -31,12 +40,13 @@ void report_locking(const Simulation& simulation, Recorder& recorder, const Log&
   mesh::make_quadratic(mesh);
   tissue::TissueSettings reference = scenario.tissue;
   reference.dilatation = tissue::Dilatation::nodal;
-  std::vector<double> ratios;
-  for (const cavity::CavitySettings& cavity : scenario.cavities.cavities) {
-    const double here = wall_compliance(scenario.mesh, scenario.tissue, cavity, comm);
-    ratios.push_back(wall_compliance(mesh, reference, cavity, comm) / here);
-    log.note("locking gauge: dP/dV of cavity '" + cavity.name + "' is " +
-             core::shown(ratios.back()) + " times that of p2_anp on this mesh");
+  const auto& cavities = scenario.cavities.cavities;
+  const std::vector<double> here = wall_compliances(scenario.mesh, scenario.tissue, cavities, comm);
+  std::vector<double> ratios = wall_compliances(mesh, reference, cavities, comm);
+  for (std::size_t i = 0; i < cavities.size(); ++i) {
+    ratios[i] /= here[i];
+    log.note("locking gauge: dP/dV of cavity '" + cavities[i].name + "' is " +
+             core::shown(ratios[i]) + " times that of p2_anp on this mesh");
   }
   recorder.table(simulation, "/locking_gauge/ratio", ratios, "1");
 }

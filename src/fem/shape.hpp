@@ -37,6 +37,39 @@ Eigen::Matrix<double, 4, points_per_tet<N>> corner_weights()
   }
 }
 
+/// ∫ N_a N_b over V of a straight tet, exact.
+template <int N>
+Eigen::Matrix<double, N, N> straight_mass()
+{
+  Eigen::Matrix<double, N, N> mass;
+  if constexpr (N == 4) {
+    mass.setConstant(1.0 / 20.0);
+    mass.diagonal().setConstant(1.0 / 10.0);
+  } else {
+    // By the corners that the nodes have in common: corners 6 and 1, corner and middle -4 (an end)
+    // and -6, middles 32, 16 (a common end) and 8, over 420.
+    const auto ends = [](int a) -> std::array<int, 2> {
+      if (a < 4) return {a, a};
+      const auto [i, j] = mesh::tet_edges[static_cast<std::size_t>(a - 4)];
+      return {static_cast<int>(i), static_cast<int>(j)};
+    };
+    for (int a = 0; a < N; ++a)
+      for (int b = 0; b < N; ++b) {
+        const auto [i, j] = ends(a);
+        const auto [k, l] = ends(b);
+        const bool touch = i == k || i == l || j == k || j == l;
+        if (a < 4 && b < 4)
+          mass(a, b) = a == b ? 6.0 : 1.0;
+        else if (a < 4 || b < 4)
+          mass(a, b) = touch ? -4.0 : -6.0;
+        else
+          mass(a, b) = a == b ? 32.0 : touch ? 16.0 : 8.0;
+      }
+    mass /= 420.0;
+  }
+  return mass;
+}
+
 inline TetShape tet_shape(const std::array<core::Vec3, 4>& corner)
 {
   core::Mat3 D;

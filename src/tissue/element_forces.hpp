@@ -186,9 +186,7 @@ OwnedField ElementsOf<N>::operate(const Configuration& at, double inverse_h,
     Nodal force = scale_m * mass_factor(e) * w * mass_form(e);
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
       Mat3 P = increment(at, e, point, gradient(w, point));
-      if (averaged()) {
-        P += p[static_cast<Eigen::Index>(point)] * dilatation_gradient(at, point);
-      }
+      if (averaged()) P += p[static_cast<Eigen::Index>(point)] * dilatation_gradient(at, point);
       force += scale_k * shapes_[point].volume * P * shapes_[point].gradient;
     }
     scatter(force, e, product);

@@ -38,6 +38,13 @@ struct ElementSettings
   Dilatation dilatation = Dilatation::pointwise;
   Tangent tangent = Tangent::rotated;
   std::vector<Material> materials;  ///< by volume of the mesh
+
+  /// The operator is the whole derivative of the forces: it may be indefinite.
+  bool exact_tangent() const
+  {
+    return model == Model::neo_hookean ||
+           (model == Model::corotational && tangent == Tangent::exact);
+  }
 };
 
 /// Where the tissue is linearised: what the operator depends on, by integration point of the local

@@ -30,7 +30,9 @@ ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
     volume_.push_back(volume);
     region_.push_back(mesh.region[static_cast<std::size_t>(space.file_tet(e))]);
   }
-  measure_masses(mesh);
+  straight_mass_ = fem::straight_mass<N>();
+  if constexpr (N == 10) measure_curved_masses(mesh);
+  if (settings_.mass == Mass::lumped) lump_masses();
   if (settings_.dilatation != Dilatation::nodal) return;
   patches_ = corner_patches(space, region_);
   const auto share = fem::corner_weights<N>();
@@ -67,33 +69,32 @@ void integrate_tet(const F& f)
 }  // namespace
 
 template <int N>
-void ElementsOf<N>::measure_masses(const mesh::Mesh& mesh)
+void ElementsOf<N>::measure_curved_masses(const mesh::Mesh& mesh)
 {
-  straight_mass_.setZero();
-  if constexpr (N == 4) {
-    straight_mass_.setConstant(1.0 / 20.0);
-    straight_mass_.diagonal().setConstant(0.1);
-  } else {
+  for (std::size_t e = 0; e < tets(); ++e) {
+    const mesh::TetPositions x = mesh::positions(mesh, space_->file_tet(e));
+    if (mesh::is_straight(x)) continue;
+    Scalar& mass = curved_mass_[e];
+    mass.setZero();
     integrate_tet([&](const Eigen::Vector4d& at, double weight) {
-      const Eigen::Matrix<double, N, 1> shape = mesh::quadratic_shape(at);
-      straight_mass_ += weight * shape * shape.transpose();
-    });
-    for (std::size_t e = 0; e < tets(); ++e) {
-      const mesh::TetPositions x = mesh::positions(mesh, space_->file_tet(e));
-      if (mesh::is_straight(x)) continue;
-      Scalar& mass = curved_mass_[e];
-      mass.setZero();
-      integrate_tet([&](const Eigen::Vector4d& at, double weight) {
+      if constexpr (N == 10) {
         const Eigen::Matrix<double, N, 1> shape = mesh::quadratic_shape(at);
         mass += fem::quadratic_point(x, at, weight).volume * shape * shape.transpose();
-      });
-    }
+      }
+    });
   }
-  if (settings_.mass == Mass::consistent) return;
-  // The diagonal in its own proportions (Hinton, Rock and Zienkiewicz 1976): for linear tets V/4.
+}
+
+/// The diagonals in their own proportions (Hinton, Rock and Zienkiewicz 1976): linear tets have
+/// V/4.
+template <int N>
+void ElementsOf<N>::lump_masses()
+{
   const auto lump = [](Scalar& mass) {
-    const Eigen::Matrix<double, N, 1> diagonal = mass.diagonal();
-    mass = (mass.sum() / diagonal.sum() * diagonal).asDiagonal();
+    double total = 0.0;
+    for (double entry : mass.reshaped()) total += entry;
+    const Eigen::Matrix<double, N, 1> diagonal = total / mass.trace() * mass.diagonal();
+    mass = diagonal.asDiagonal();
   };
   lump(straight_mass_);
   for (auto& [e, mass] : curved_mass_) lump(mass);
@@ -222,9 +223,8 @@ void ElementsOf<N>::assemble(const Configuration& at, double inverse_h,
           slots, blocks);
     if (settings_.dilatation == Dilatation::element) {
       Nodal sum = Nodal::Zero();
-      for (std::size_t q = 0; q < points; ++q) {
+      for (std::size_t q = 0; q < points; ++q)
         sum += shape[q].volume * dilatation_gradient(at, points * e + q) * shape[q].gradient;
-      }
       add_rank_one<N>(sum, scale_k * lambda_of_mean(m) / volume_[e], slots, blocks);
     }
     values.add(slots, blocks);

@@ -57,11 +57,7 @@ class ElementsOf final : public Elements
     return split ? std::min(m.lambda(), most_at_point * m.mu()) : 0.0;
   }
   double lambda_of_mean(const Material& m) const { return m.lambda() - lambda_at_point(m); }
-  bool exact() const
-  {
-    return settings_.model == Model::neo_hookean ||
-           (settings_.model == Model::corotational && settings_.tangent == Tangent::exact);
-  }
+  bool exact() const { return settings_.exact_tangent(); }
 
   Nodal nodal(const GhostedField& field, std::size_t e) const;
   void scatter(const Nodal& values, std::size_t e, OwnedField& field) const;
@@ -88,7 +84,8 @@ class ElementsOf final : public Elements
   }
   void gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
                         core::PolarBatch::Matrix& G) const;
-  void measure_masses(const mesh::Mesh& mesh);
+  void measure_curved_masses(const mesh::Mesh& mesh);
+  void lump_masses();
   /// λθ at the points, of point values of θ averaged as the elements do [Pa].
   core::VecX pressure_of(const core::VecX& theta) const;
   void add_averaged(const core::VecX& theta, core::VecX& p) const;

@@ -100,16 +100,10 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
   core::VecX p;
   if (led) p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
   const bool upright = configure(space_->with_ghosts(iterate), at_);
-  exact_at_ = upright && exact_tangent();
+  exact_at_ = upright && settings_.exact_tangent();
   if (exact_at_) u_at_ = iterate;
   if (led && upright) at_.p = std::move(p);
   return upright;
-}
-
-bool Tissue::exact_tangent() const
-{
-  return settings_.model == Model::neo_hookean ||
-         (settings_.model == Model::corotational && settings_.tangent == Tangent::exact);
 }
 
 /// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Agreed by
@@ -119,7 +113,7 @@ std::optional<std::string> Tissue::why_not(const std::function<void()>& make_ope
   try {
     make_operator();
   } catch (const core::Failure& failure) {
-    if (!exact_tangent() || failure.code() != core::ExitCode::solver) throw;
+    if (!settings_.exact_tangent() || failure.code() != core::ExitCode::solver) throw;
     current_->older = false;
     current_->inverse_h = -1.0;
     current_->uses = 0;

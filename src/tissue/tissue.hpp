@@ -178,7 +178,6 @@ class Tissue
   };
 
   bool linearise_at(const OwnedField& iterate, bool goes_on);
-  bool exact_tangent() const;
   void use_operator(const Configuration& at, const TimeStep& step);
   void factor(const std::vector<Mat3>& R);
   std::optional<std::string> why_not(const std::function<void()>& make_operator);

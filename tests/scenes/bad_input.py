@@ -20,6 +20,23 @@ refuses("empty mesh", 65, ["empty.msh", "empty"], {"-mesh": written("empty.msh",
 refuses("broken mesh", 65, ["broken.msh"], {"-mesh": written("broken.msh", tet[:150])})
 refuses("inverted tet", 65, ["77", "inverted"],
         {"-mesh": written("inverted.msh", tet.replace("CORNERS", "1 3 2 4"))})
+nodes = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0),
+         (0, 0, 0.5), (0, 0.5, 0.5), (0.5, 0, 0.5)]  # Gmsh's order
+
+
+def quadratic_tet(face, moved=None):
+    """A file with one tet of order 2, its middle 5 moved, and one triangle of the group "base"."""
+    at = [moved if moved and i == 4 else x for i, x in enumerate(nodes)]
+    return ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 2 \"base\"\n3 1 \"a\"\n"
+            "$EndPhysicalNames\n$Nodes\n10\n"
+            + "".join(f"{i + 1} {x} {y} {z}\n" for i, (x, y, z) in enumerate(at))
+            + f"$EndNodes\n$Elements\n2\n7 {face}\n77 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n")
+
+
+refuses("triangle of another order", 65, ["base", "7", "another order"],
+        {"-mesh": written("orders.msh", quadratic_tet("2 2 2 2 1 3 2"))})
+refuses("folded tet", 65, ["77", "folded"],
+        {"-mesh": written("folded.msh", quadratic_tet("9 2 2 2 1 3 2 7 6 5", (0.5, 0.6, 0.6)))})
 refuses("mesh scale of zero", 64, ["-mesh_scale"], {"-mesh_scale": "0"})
 refuses("unknown surface", 65, ["z9", "did you mean 'z"], {"-fix": "z9"})
 refuses("bad axes", 64, ["-fix", "z0:q"], {"-fix": "z0:q"})

@@ -18,6 +18,22 @@ void add_surface(mesh::Mesh& mesh, const std::string& name,
   mesh.surfaces.push_back(std::move(surface));
 }
 
+driver::Scenario fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
+                              cavity::Model model)
+{
+  driver::Scenario scenario;
+  scenario.mesh = std::move(mesh);
+  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.tissue.model = tissue::Model::linear;
+  scenario.tissue.materials = {material};
+  cavity::CavitySettings one;
+  one.name = "fluid";
+  one.surface = "wall";
+  one.model = model;
+  scenario.cavities.cavities = {one};
+  return scenario;
+}
+
 driver::Scenario cavity_scenario(int n, int hole, cavity::Model model, cavity::Solver solver)
 {
   const double cell = 0.01, size = n * cell, half = 0.5 * hole * cell;

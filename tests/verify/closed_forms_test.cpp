@@ -19,17 +19,7 @@ const double G = E / (2.0 * (1.0 + nu)), K = E / (3.0 * (1.0 - 2.0 * nu));
 
 driver::Scenario statics(mesh::Mesh mesh, cavity::Model model)
 {
-  driver::Scenario scenario;
-  scenario.mesh = std::move(mesh);
-  scenario.time.analysis = driver::Analysis::equilibrium;
-  scenario.tissue.model = tissue::Model::linear;
-  scenario.tissue.materials = {{E, nu, 1000.0, 0.0, 0.0}};
-  cavity::CavitySettings one;
-  one.name = "fluid";
-  one.surface = "wall";
-  one.model = model;
-  scenario.cavities.cavities = {one};
-  return scenario;
+  return test::fluid_filled(std::move(mesh), {E, nu, 1000.0, 0.0, 0.0}, model);
 }
 
 void give_pressure(driver::Scenario& scenario, double p)

@@ -84,6 +84,32 @@ void integrate(double volume, const F& f)
       }
 }
 
+/// A unit cube of n cells a side with its walls held, static and factored.
+struct HeldCube : test::Body
+{
+  HeldCube(bool quadratic, Dilatation dilatation, const tissue::Material& material, int n)
+      : test::Body(shape(quadratic, n), settings(dilatation, material))
+  {
+    tissue.prepare({0.0, 1.0, true});
+  }
+  static test::BlockShape shape(bool quadratic, int n)
+  {
+    test::BlockShape shape{n, n, n, Vec3::Ones(), 0.1};
+    shape.quadratic = quadratic;
+    return shape;
+  }
+  static tissue::TissueSettings settings(Dilatation dilatation, const tissue::Material& material)
+  {
+    tissue::TissueSettings settings;
+    settings.model = tissue::Model::linear;
+    settings.dilatation = dilatation;
+    settings.materials = {material};
+    for (const char* side : {"x0", "x1", "y0", "y1", "z0", "z1"})
+      settings.boundary.fixed.push_back({side, 7});
+    return settings;
+  }
+};
+
 struct Errors
 {
   double L2 = 0.0, H1 = 0.0;
@@ -92,16 +118,7 @@ struct Errors
 Errors manufactured_errors(bool quadratic, Dilatation dilatation, double poisson, int n)
 {
   const Manufactured exact{{1.0, poisson, 1.0, 0.0, 0.0}};
-  tissue::TissueSettings settings;
-  settings.model = tissue::Model::linear;
-  settings.dilatation = dilatation;
-  settings.materials = {exact.m};
-  for (const char* side : {"x0", "x1", "y0", "y1", "z0", "z1"})
-    settings.boundary.fixed.push_back({side, 7});
-  test::BlockShape shape{n, n, n, Vec3::Ones(), 0.1};
-  shape.quadratic = quadratic;
-  test::Body body(shape, settings);
-  body.tissue.prepare({0.0, 1.0, true});
+  HeldCube body(quadratic, dilatation, exact.m, n);
   const auto over_tet = [&](int t, const auto& f) {
     const auto corner = mesh::corners(body.mesh, t);
     integrate(mesh::tet_volume(body.mesh, t), [&](const Eigen::Vector4d& at, double weight) {
@@ -189,16 +206,8 @@ TEST(ManufacturedSolution, DoesNotLockWhenNearlyIncompressible)
 /// p, over n cells a side; the constant pressure, which held walls cannot feel, left out.
 double inf_sup(bool quadratic, int n)
 {
-  tissue::TissueSettings settings;
-  settings.model = tissue::Model::linear;
-  settings.materials = {{1.0, 0.0, 1.0, 0.0, 0.0}};  // σ = ε
-  for (const char* side : {"x0", "x1", "y0", "y1", "z0", "z1"})
-    settings.boundary.fixed.push_back({side, 7});
-  test::BlockShape shape{n, n, n, Vec3::Ones(), 0.1};
-  shape.quadratic = quadratic;
-  test::Body body(shape, settings);
-  body.tissue.prepare({0.0, 1.0, true});
-  const int corners = (n + 1) * (n + 1) * (n + 1);  // they come first
+  HeldCube body(quadratic, Dilatation::pointwise, {1.0, 0.0, 1.0, 0.0, 0.0}, n);  // σ = ε
+  const int corners = (n + 1) * (n + 1) * (n + 1);                                // they come first
   core::MatX B = core::MatX::Zero(corners, 3 * body.mesh.node_count());
   core::VecX M = core::VecX::Zero(corners);
   for (int t = 0; t < body.mesh.tet_count(); ++t) {

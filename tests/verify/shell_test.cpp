@@ -17,17 +17,9 @@ constexpr double a = 0.011, b = 0.025, E = 15000.0;
 
 driver::Scenario sphere(mesh::Mesh mesh, double poisson, cavity::Model model)
 {
-  driver::Scenario scenario;
-  scenario.mesh = std::move(mesh);
-  scenario.time.analysis = driver::Analysis::equilibrium;
-  scenario.tissue.model = tissue::Model::linear;
-  scenario.tissue.materials = {{E, poisson, 1000.0, 0.0, 0.0}};
+  driver::Scenario scenario =
+      test::fluid_filled(std::move(mesh), {E, poisson, 1000.0, 0.0, 0.0}, model);
   scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
-  cavity::CavitySettings one;
-  one.name = "fluid";
-  one.surface = "wall";
-  one.model = model;
-  scenario.cavities.cavities = {one};
   return scenario;
 }
 
