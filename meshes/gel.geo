@@ -1,8 +1,9 @@
 // Gel block of the needle insertion scene: 15 x 5 x 5 cm, unstructured tets.
 // Physical groups: volume "gel"; surfaces "bottom", "top", "entry" (x = 0), "exit", "front", "back".
 SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 0.15, 0.05, 0.05};
-DefineConstant[h = 0.0092];  // edge length [m]; gmsh -setnumber h 0.005 for a finer block
+// Edge length and length of the block [m]; gmsh -setnumber h 0.005 for a finer one.
+DefineConstant[h = 0.0092, length = 0.15];
+Box(1) = {0, 0, 0, length, 0.05, 0.05};
 Mesh.CharacteristicLengthMin = h;
 Mesh.CharacteristicLengthMax = h;
 Mesh.Algorithm3D = 1;

@@ -10,9 +10,9 @@ namespace trocar::insertion {
 /// and the nodes around it, h away, the displacement of a line load goes as its logarithm
 /// (antiplane and plane strain; Love 1927, art. 148), while nodes carry the load as if it were
 /// spread over h / fit. Over a length ℓ of the line the rows gain [m/N]
-///   axial    ln(fit h / r) / (2π μ ℓ)
-///   lateral  (3 - 4ν) / (4 (1 - ν)) of that,
-/// and nothing where the mesh is finer than the shaft is thick.
+///   axial    ¼ ln(1 + (fit h / r)⁴) / (2π μ ℓ)
+///   lateral  (3 - 4ν) / (4 (1 - ν)) of that:
+/// the logarithm, going to nothing where the mesh is finer than the shaft is thick.
 struct RadiusCorrection
 {
   std::vector<double> radius;   ///< of every needle [m]
