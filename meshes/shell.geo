@@ -1,6 +1,7 @@
 // Hollow sphere with a fluid inside, for the closed form of Lame: radii 11 and 25 mm.
 SetFactory("OpenCASCADE");
-DefineConstant[h = 0.006, pins = 0];  // edge length outside [m], half of it at the wall; 1 for pins
+// Edge length outside [m], half of it at the wall; 1 for pins; 2 for round walls.
+DefineConstant[h = 0.006, pins = 0, order = 2];
 Sphere(1) = {0, 0, 0, 0.025};
 Sphere(2) = {0, 0, 0, 0.011};
 BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
@@ -19,7 +20,7 @@ Field[1] = MathEval;
 Field[1].F = Sprintf("%g * (0.5 + 0.5 * (Sqrt(x^2 + y^2 + z^2) - 0.011) / 0.014)", h);
 Background Field = 1;
 Mesh.Optimize = 1;
-Mesh.ElementOrder = 2;  // round walls
+Mesh.ElementOrder = order;
 Mesh.MshFileVersion = 4.1;
 eps = 1e-4;
 wall() = Surface In BoundingBox {-0.011 - eps, -0.011 - eps, -0.011 - eps, 0.011 + eps, 0.011 + eps, 0.011 + eps};

@@ -131,7 +131,7 @@ class Scene:
         """A mesh of edges h; curved where the geometry is round and the elements can be."""
         if (h, order) not in self.meshes:
             path = f"build/meshes/wp_{self.name}_{h:g}_{order}.msh"
-            numbers = {"h": h, **{k: f(h) for k, f in self.numbers.items()}}
+            numbers = {"h": h, "order": order, **{k: f(h) for k, f in self.numbers.items()}}
             words = [w for k, v in numbers.items() for w in ("-setnumber", k, f"{v:g}")]
             subprocess.run(
                 ["gmsh", "-3", "-order", str(order), f"meshes/{self.geometry}.geo", *words,
@@ -176,8 +176,7 @@ def shell(poisson):
         return volume[-1] / volume[0] - 1.0
     return Scene(f"shell_{poisson:g}",
                  {"options_file": "options/shell.opts", "tissue_poisson": poisson, "fix": PINS},
-                 "shell", {"p1": [6e-3, 4e-3, 2.8e-3, 2e-3, 1.4e-3],
-                           "p2": [12e-3, 8e-3, 6e-3, 4e-3, 2.8e-3]},
+                 "shell", {"p1": [6e-3, 4e-3, 2.8e-3, 2e-3, 1.4e-3], "p2": [12e-3, 8e-3, 6e-3, 4e-3]},
                  value, 3 * free_shell(poisson), numbers={"pins": lambda h: 1})
 
 
@@ -198,8 +197,7 @@ def eshelby(poisson):
                  {"analysis": "static", "time_step": 1, "time_end": 1, "tissue_model": "linear",
                   "tissue_young": YOUNG, "tissue_poisson": poisson, "cavities": "fluid",
                   "cavity_fluid_surface": "wall"},
-                 "shell", {"p1": [6e-3, 4e-3, 2.8e-3, 2e-3, 1.4e-3],
-                           "p2": [12e-3, 8e-3, 6e-3, 4e-3, 2.8e-3]},
+                 "shell", {"p1": [6e-3, 4e-3, 2.8e-3, 2e-3, 1.4e-3], "p2": [12e-3, 8e-3, 6e-3, 4e-3]},
                  value, np.ones(2), field=lambda x: liquid_sphere(x, poisson), held=("outer",))
 
 

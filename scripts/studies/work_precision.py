@@ -31,6 +31,7 @@ from precision_scenes import P1, P2, scenes
 from precision_steps import SCHEMES, SOLVERS, STEPS, constraint_solvers, time_steps
 
 LONG = 8.0  # [s]: such runs are timed once
+FAR = 100.0  # times the longest run: what would cost more is not extrapolated
 FINER = 0.6  # edges of the reference's mesh over the finest of the study
 
 
@@ -119,7 +120,9 @@ def cost(rows, method, error=0.01):
             return float(np.exp(s0 + (np.log(error) - e0) * (s1 - s0) / (e1 - e0))), ""
     if len(logs) > 1 and logs[-1][0] < logs[-2][0]:
         (e0, s0), (e1, s1) = logs[-2:]
-        return float(np.exp(s1 + (np.log(error) - e1) * (s1 - s0) / (e1 - e0))), "extrapolated "
+        seconds = float(np.exp(min(50.0, s1 + (np.log(error) - e1) * (s1 - s0) / (e1 - e0))))
+        if seconds < FAR * mine[-1]["seconds"]:
+            return seconds, "extrapolated "
     return None, "never"
 
 

@@ -135,15 +135,17 @@ tissue::Push Simulation::push_of(const Pass& pass) const
   return push;
 }
 
-/// Of a step that is iterated anyway, a linearisation need only lead on. Under pressures that
-/// follow it does so by the square of what the last one left, so that Newton's rate is kept.
+/// Of a step that is iterated anyway, a linearisation need only lead on: well beyond what the last
+/// one left, or one sweep with an older factor would pass for it again and again and lead nowhere.
+/// Under pressures that follow it does so by the square of that, so that Newton's rate is kept.
 double Simulation::lag_tolerance(const core::TimeStep& now, double residual) const
 {
-  constexpr double leads_on = 1e-4, least = 1e-10;
-  if (cavities_ && cavities_->follows())
-    return std::isfinite(residual) ? std::clamp(residual * residual, least, leads_on) : leads_on;
-  const bool iterated = now.is_static || scenario_.time.newton_max > 1;
-  return std::max(scenario_.tissue.lag_tolerance, iterated ? leads_on : 0.0);
+  constexpr double leads_on = 1e-4, least = 1e-10, part = 0.1;
+  const bool follows = cavities_ && cavities_->follows();
+  if (!follows && !now.is_static && scenario_.time.newton_max == 1)
+    return scenario_.tissue.lag_tolerance;
+  if (!std::isfinite(residual)) return leads_on;
+  return std::clamp(follows ? residual * residual : part * residual, least, leads_on);
 }
 
 std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,

@@ -98,23 +98,24 @@ StepResult Simulation::step(const State& old, const core::TimeStep& step)
   double residual = std::numeric_limits<double>::infinity();
   core::VecX last;  // multipliers, to go on from
   cavity::Shape walls = walls_of(next);
+  Iterate before;
   for (int iteration = 1; iteration <= most; ++iteration) {
-    const fem::OwnedField iterate = most > 1 ? next.tissue.u : fem::OwnedField{};
-    const double last_residual = residual;
+    if (most > 1) before.u = next.tissue.u;
+    before.residual = residual;
     const Pass pass = linearised_step(past, now, residual, walls, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
-    if (most == 1 || balanced(past, next, walls, now, pass, residual)) {
-      accept(past, now, pass, walls, next, report);
-      if (scenario_.time.second_order && now.t > 0.0)
-        next.before = Before{now.h, old.tissue, old.needles};
-      if (scenario_.output.energy) account(old, past, now, pass, walls, report, next);
+    const fem::OwnedField forces =
+        most > 1 ? all_forces(pass, next, walls, now) : fem::OwnedField{};
+    if (pass.upright && (most == 1 || balanced(past, next, walls, now, pass, forces, residual))) {
+      accept(old, past, now, pass, walls, next, report);
       return {std::move(next), std::move(report), {}};
     }
-    if (pass.rows.set.empty() && residual > last_residual) {  // overshoot: half the increment
-      next.tissue.u.value = 0.5 * (next.tissue.u.value + iterate.value);
-      walls = walls_of(next);
-    }
+    const bool overshoots = !pass.upright || residual > before.residual;
+    if (most == 1 ||
+        (overshoots && !shorten(past, now, pass, before, forces, walls, next, residual)))
+      return StepResult::rejected("an element of the tissue would turn inside out");
+    before.forces = forces;
   }
   const std::string what = residual <= balance_tolerance
                                ? "the gaps of the rows stay open"
@@ -146,8 +147,7 @@ Simulation::Pass Simulation::linearised_step(const State& past, const core::Time
     if (gaps_closed(now, next, pass)) break;
   }
   if (pass.trouble) return pass;
-  if (!tissue_.possible(next.tissue.u))
-    pass.trouble = "an element of the tissue would turn inside out";
+  pass.upright = tissue_.possible(next.tissue.u);
   for (const needle::NeedleState& needle : next.needles)
     if (!needle.finite()) pass.trouble = "a needle's shape is not finite";
   return pass;
@@ -202,18 +202,11 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
 }
 
 bool Simulation::balanced(const State& past, const State& next, const cavity::Shape& walls,
-                          const core::TimeStep& now, const Pass& pass, double& residual) const
+                          const core::TimeStep& now, const Pass& pass,
+                          const fem::OwnedField& forces, double& residual) const
 {
-  double scale = 0.0;
-  fem::OwnedField r = tissue_.residual(past.tissue, next.tissue.u, now, scale);
   const bool pushed = pass.lambda.lambda.size() > 0;
-  if (pushed || cavities_) {
-    fem::OwnedField forces = all_forces(pass, next, walls, now);
-    tissue_.fixed().clear(forces);
-    r.value += forces.value;
-    scale += space_.norm(forces);
-  }
-  residual = space_.norm(r) / scale;
+  residual = unbalanced(past, next.tissue.u, now, forces);
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
     // are below round-off.
@@ -240,8 +233,9 @@ bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const
   return true;
 }
 
-void Simulation::accept(const State& past, const core::TimeStep& now, const Pass& pass,
-                        const cavity::Shape& walls, State& next, StepReport& report) const
+void Simulation::accept(const State& old, const State& past, const core::TimeStep& now,
+                        const Pass& pass, const cavity::Shape& walls, State& next,
+                        StepReport& report) const
 {
   if (!scenario_.tissue.boundary.displacements.empty())
     report.tools =
@@ -265,6 +259,9 @@ void Simulation::accept(const State& past, const core::TimeStep& now, const Pass
     needle.tip = next.needles[i].shaft.tip();
     needle.depth = insertion_->depth(next.insertions[i]);
   }
+  if (scenario_.time.second_order && now.t > 0.0)
+    next.before = Before{now.h, old.tissue, old.needles};
+  if (scenario_.output.energy) account(old, past, now, pass, walls, report, next);
 }
 
 }  // namespace trocar::driver

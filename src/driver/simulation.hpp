@@ -142,6 +142,7 @@ class Simulation
   {
     Rows rows;
     std::optional<std::string> trouble;  ///< why the step cannot be taken; agreed by all ranks
+    bool upright = true;                 ///< no element turned inside out; agreed by all ranks
     law::Problem problem;
     law::Multipliers lambda;
     bool same_laws = false;                      ///< every row holds or slips as in the pass before
@@ -153,6 +154,13 @@ class Simulation
     core::VecX forces;                           ///< Ĥᵀλ on them [N]
     std::vector<core::VecX> levers;              ///< H_nᵀλ on each needle
     double tolerance = 0.0;                      ///< of an approach, see lag_tolerance
+  };
+
+  /// What a linearisation started from.
+  struct Iterate
+  {
+    fem::OwnedField u, forces;  ///< place, and forces of needles and cavities on the tissue [N]
+    double residual = 0.0;      ///< see unbalanced; infinite before the first
   };
 
   const State& past_of(const State& old, core::TimeStep& now, State& extrapolated) const;
@@ -192,8 +200,14 @@ class Simulation
   tissue::Push push_of(const Pass& pass) const;
   double lag_tolerance(const core::TimeStep& now, double residual) const;
   bool balanced(const State& past, const State& next, const cavity::Shape& walls,
-                const core::TimeStep& now, const Pass& pass, double& residual) const;
-  void accept(const State& past, const core::TimeStep& now, const Pass& pass,
+                const core::TimeStep& now, const Pass& pass, const fem::OwnedField& forces,
+                double& residual) const;
+  double unbalanced(const State& past, const fem::OwnedField& u, const core::TimeStep& now,
+                    const fem::OwnedField& forces) const;
+  bool shorten(const State& past, const core::TimeStep& now, const Pass& pass,
+               const Iterate& before, const fem::OwnedField& forces, cavity::Shape& walls,
+               State& next, double& residual) const;
+  void accept(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
               const cavity::Shape& walls, State& next, StepReport& report) const;
   void account(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
                const cavity::Shape& walls, const StepReport& report, State& next) const;
