@@ -103,6 +103,11 @@ def l2_error(run, folder, field):
     return float(np.sqrt(off / size))
 
 
+def command_line(options):
+    """Words of a dict of options; a flag has the value ''."""
+    return [w for k, v in options.items() for w in (f"-{k}", *([str(v)] if v != "" else []))]
+
+
 def at_place(place):
     """Reader of the displacement at a place."""
     def read(run, folder):
@@ -149,7 +154,7 @@ class Scene:
         if self.field:
             file = written_field(mesh, folder, self.field)
             options |= {f"boundary_{surface}_field": file for surface in self.held}
-        return [w for k, v in options.items() for w in (f"-{k}", str(v))]
+        return command_line(options)
 
     def judge(self, folder):
         """What a run found, and its nodes."""
@@ -217,8 +222,8 @@ def scenes():
     insertion = Scene("insertion",
                       {"options_file": "options/gel_insertion.opts", "tissue_model": "linear",
                        "time_initial": "unstressed", "gravity": "0,0,0", "time_end": 2,
-                       "needle_model": "rigid"},
-                      "gel", {"p1": [12e-3, 8e-3, 5.5e-3, 4e-3, 2.8e-3],
+                       "insertion_radius_correction": ""},
+                      "gel", {"p1": [12e-3, 8e-3, 5.5e-3, 4e-3, 2.8e-3, 2e-3],
                               "p2": [24e-3, 16e-3, 12e-3, 8e-3, 5.5e-3]},
                       at_place(TARGET), order=1)
     return [cube(0.45), cube(0.4999), *map(shell, (0.3, 0.485, 0.4999)), eshelby(0.485), cantilever,

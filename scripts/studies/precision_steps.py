@@ -1,8 +1,8 @@
 """Parts of work_precision without a mesh to refine: time steps, and constraint solvers."""
 import numpy as np
 
-from common import ROOT, mesh, run
-from precision_scenes import TARGET, YOUNG, at_place
+from common import mesh, run
+from precision_scenes import TARGET, YOUNG, at_place, command_line
 
 STEPS = {  # time steps [s] by scene, the last one the reference's
     "swing": [0.05, 0.025, 0.0125, 0.00625, 0.003125, 0.0015625, 0.0003125],
@@ -29,15 +29,14 @@ def insertion_dt(folder):
     """The gel insertion's block and needle, with inertia and friction that slides."""
     return {"options_file": "options/gel_insertion.opts", "tissue_element": "p2",
             "mesh": mesh("gel", "wp_swing", h=0.016), "tissue_model": "linear",
-            "time_initial": "unstressed", "gravity": "0,0,0", "time_end": 2,
-            "needle_model": "rigid"}, at_place(TARGET)
+            "time_initial": "unstressed", "gravity": "0,0,0", "time_end": 2}, at_place(TARGET)
 
 
 def time_steps(name, folder, timed, quick):
     """Rows of both schemes over the steps; errors against bdf2 with the shortest step."""
     options, value = {"swing": swing, "insertion_dt": insertion_dt}[name](folder)
     *steps, shortest = STEPS[name]
-    words = [w for k, v in options.items() for w in (f"-{k}", str(v))]
+    words = command_line(options)
     rows = []
     for scheme in SCHEMES:
         for step in steps[:2] if quick else steps:
