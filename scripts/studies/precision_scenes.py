@@ -207,7 +207,7 @@ def eshelby(poisson):
 
 
 def scenes():
-    phantom = Scene("phantom", {"options_file": "options/phantom.opts"}, "phantom",
+    phantom = Scene("phantom", {"options_file": "options/phantom.opts", "locking_gauge": "false"}, "phantom",
                     {"p1": [6e-3, 4.2e-3, 3e-3, 2.2e-3, 1.6e-3, 1.2e-3],
                      "p2": [12e-3, 8e-3, 6e-3, 4.2e-3]},
                     lambda run, _: run["history/cavity/pocket/pressure"][-1],

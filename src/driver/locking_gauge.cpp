@@ -39,14 +39,14 @@ void report_locking(const Simulation& simulation, Recorder& recorder, const Log&
   mesh::Mesh mesh = scenario.mesh;
   mesh::make_quadratic(mesh);
   tissue::TissueSettings reference = scenario.tissue;
-  reference.dilatation = tissue::Dilatation::nodal;
+  reference.dilatation = tissue::Dilatation::element;
   const auto& cavities = scenario.cavities.cavities;
   const std::vector<double> here = wall_compliances(scenario.mesh, scenario.tissue, cavities, comm);
   std::vector<double> ratios = wall_compliances(mesh, reference, cavities, comm);
   for (std::size_t i = 0; i < cavities.size(); ++i) {
     ratios[i] /= here[i];
     log.note("locking gauge: dP/dV of cavity '" + cavities[i].name + "' is " +
-             core::shown(ratios[i]) + " times that of p2_anp on this mesh");
+             core::shown(ratios[i]) + " times that of p2_bbar on this mesh");
   }
   recorder.table(simulation, "/locking_gauge/ratio", ratios, "1");
 }

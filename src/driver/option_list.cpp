@@ -221,7 +221,7 @@ void add_output(std::vector<OptionSpec>& t)
       not_negative("error_target", "0", "1",
                    "energy error to be told how far off the run is; 0 = none"),
       flag("locking_gauge",
-           "compare every cavity's dP/dV with that of p2_anp on the same mesh before the run"),
+           "compare every cavity's dP/dV with that of p2_bbar on the same mesh before the run"),
       word("error_size_field", "",
            "file for the edge lengths of a mesh with that error, a background field for Gmsh"),
       flag("check", "stop after set-up: options, mesh, operator"),
