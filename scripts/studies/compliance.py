@@ -81,6 +81,11 @@ def main():
             "assembly_of_bound": f"{f['assembly_linear'] / bound:.2f}",
             "turned_assembly_ms": f"{1e3 * f['assembly_corotational']:.3g}",
             "turned_of_bound": f"{f['assembly_corotational'] / bound:.2f}",
+            "p2_dofs": int(f["dofs_p2"]),
+            "p2_assembly_ms": f"{1e3 * f['assembly_linear_p2']:.3g}",
+            "p2_assembly_of_bound": f"{f['assembly_linear_p2'] / f['assembly_bytes_p2'] * f['triad_rate']:.2f}",
+            "p2_turned_assembly_ms": f"{1e3 * f['assembly_corotational_p2']:.3g}",
+            "p2_operator_ms": f"{1e3 * f['operator_p2']:.3g}",
             "memory_MB": f"{1e-6 * f['memory_peak']:.0f}",
             "memory_kB_per_dof": f"{1e-3 * f['memory_peak'] / dofs:.2f}",
             "estimate_error": f"{f['memory_estimate'] / f['memory_peak'] - 1:.3f}"})

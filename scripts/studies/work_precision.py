@@ -8,10 +8,11 @@ phantom       pressure in the fluid paper's phantom after 9 mm
 insertion     displacement of a target 2 cm beside a needle's path, 50 steps
 swing, insertion_dt  the same two bodies over time steps: backward Euler and bdf2
 constraints   residual against time of the constraint solvers on the same problems
-Without a closed form the reference is p2 on a mesh finer than all others. Meshes are made anew for every size; round ones
-are curved for quadratic tets, but the phantom's: Gmsh folds some of its. Time is processor time of
-the whole process on one rank, median of three (of long runs one): other jobs blur it less than a
-clock's. Writes results/work_precision/{SCENE.csv,SCENE.png}, prints what 1 % costs.
+Without a closed form the reference is p2 on a mesh finer than all others. Meshes are made anew for
+every size; round ones are curved for quadratic tets, but the phantom's: Gmsh folds some of its.
+Time is processor time of the whole process on one rank, median of three (of long runs one): other
+jobs blur it less than a clock's. Writes results/work_precision/{SCENE.csv,SCENE.png}, prints what
+1 % costs.
 """
 import argparse
 import resource
@@ -93,7 +94,7 @@ def over_steps(name, folder, repeats, quick):
 
 
 def with_errors(rows, exact):
-    """Largest relative error where numbers of different kinds are compared with 1, else the norm's."""
+    """Errors relative to the exact numbers, in the norm of all of them."""
     for row in rows:
         off = np.asarray(row["value"]) - exact
         row["error"] = float(np.linalg.norm(off) / np.linalg.norm(exact))
@@ -144,6 +145,8 @@ def draw(name, rows, methods, folder):
     best = [r for r in rows if r["front"]]
     axes[0, 0].loglog([r["seconds"] for r in best], [r["error"] for r in best], "ko", ms=9,
                       mfc="none", label="Pareto front")
+    if name == "constraints":
+        axes[0, 0].set(xlabel="median time of a solve [s]")
     axes[0, 0].set(ylabel="median residual [m]" if name == "constraints" else "relative error",
                    title=name.replace("_0", ", ν = 0").replace("_dt", ", time steps"))
     axes[0, 0].legend(frameon=False, fontsize=8)

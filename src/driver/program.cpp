@@ -16,6 +16,7 @@
 #include "driver/provenance.hpp"
 #include "driver/pv_curve.hpp"
 #include "driver/recorder.hpp"
+#include "io/size_field.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -101,6 +102,8 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
     log.note("check passed: nothing was run");
     return;
   }
+  if (!scenario.output.size_field.empty())
+    base::on_root(comm, [&] { io::require_size_field(scenario.output.size_field); });
   Recorder recorder(simulation, invocation, options.resolved());
   if (scenario.output.locking_gauge) report_locking(simulation, recorder, log);
   StepResult start = simulation.initial_state();

@@ -1,11 +1,21 @@
 #include "io/size_field.hpp"
 
+#include <cstdio>
+#include <fstream>
 #include <iomanip>
 #include <sstream>
 
 #include "io/results.hpp"
 
 namespace trocar::io {
+
+void require_size_field(const std::string& file)
+{
+  const std::string temporary = file + ".tmp";
+  if (!std::ofstream(temporary))
+    throw core::output_error("option -error_size_field: cannot write " + temporary);
+  std::remove(temporary.c_str());
+}
 
 void write_size_field(const std::string& file, const mesh::Mesh& mesh, const core::VecX& sizes)
 {

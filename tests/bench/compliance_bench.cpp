@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <string>
 
 #include "base/blas.hpp"
 #include "core/stopwatch.hpp"
@@ -26,9 +27,9 @@ struct Bench
   int dofs = 0;
   int repeats = 5;
 
-  void figure(const char* name, double value, const char* unit) const
+  void figure(const std::string& name, double value, const char* unit) const
   {
-    std::printf("%d,%s,%.6g,%s\n", dofs, name, value, unit);
+    std::printf("%d,%s,%.6g,%s\n", dofs, name.c_str(), value, unit);
     std::fflush(stdout);
   }
   /// Median wall time of `work` after `prepare` [s].
@@ -166,8 +167,9 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
 }
 
 /// Filling the operator's values, with and without rotations, and the least that must be moved for
-/// it: values zeroed, read and written, and every tet's gradients, volume and slots read.
-void time_assembly(const Bench& bench, const test::BlockShape& shape)
+/// it: values zeroed, read and written, and every tet's gradients, volume and slots read. `suffix`:
+/// of the figures of quadratic tets, whose factor is timed as well.
+void time_assembly(const Bench& bench, const test::BlockShape& shape, const std::string& suffix)
 {
   for (const auto model : {tissue::Model::linear, tissue::Model::corotational}) {
     tissue::TissueSettings settings = gel(solve::Provider::supernodal);
@@ -185,13 +187,23 @@ void time_assembly(const Bench& bench, const test::BlockShape& shape)
       if (turns || at.R.empty()) body.tissue.configure(u_g, at);
       body.tissue.assemble(at, 100.0);
     });
-    bench.figure(turns ? "assembly_corotational" : "assembly_linear", seconds, "s");
+    bench.figure((turns ? "assembly_corotational" : "assembly_linear") + suffix, seconds, "s");
     if (turns) continue;
     const fem::BlockPattern pattern(body.space);
-    const double tets = static_cast<double>(body.space.tets());
-    bench.figure("assembly_bytes",
-                 3.0 * 72.0 * static_cast<double>(pattern.block_count()) + tets * (104.0 + 44.0),
+    const double pairs = shape.quadratic ? 55.0 : 10.0;
+    bench.figure("assembly_bytes" + suffix,
+                 3.0 * 72.0 * static_cast<double>(pattern.block_count()) +
+                     static_cast<double>(body.space.tets()) * (108.0 + 4.0 * pairs),
                  "B");
+    if (suffix.empty()) continue;
+    bench.figure("dofs" + suffix, static_cast<double>(body.space.owned_dofs()), "1");
+    body.tissue.analyse();
+    double h = 0.01;
+    bench.figure("operator" + suffix, bench.median([&] {
+      h *= 1.01;
+      body.tissue.prepare({h, h, false});
+    }),
+                 "s");
   }
 }
 
@@ -245,7 +257,10 @@ int run(int argc, char** argv)
   time_supernodal(bench, shape);  // first: its memory is what the process takes more
   memory_rates(bench);
   time_pinned(bench, shape);
-  time_assembly(bench, shape);
+  time_assembly(bench, shape, "");
+  test::BlockShape half{15 * n / 8, n / 2, n / 2, size, 0.15};
+  half.quadratic = true;
+  time_assembly(bench, half, "_p2");
   time_baseline(bench, shape, argc > 3 ? static_cast<std::size_t>(std::atoi(argv[3])) : 60);
   return 0;
 }

@@ -61,6 +61,8 @@ refuses("two tangents of linear tissue", 64, ["-tissue_tangent exact"],
 refuses("locking gauge without cavity", 64, ["-locking_gauge"], {"-locking_gauge": ""})
 refuses("radius correction of the eta law", 64, ["-insertion_radius_correction", "-insertion_eta"],
         {"-insertion_radius_correction": "", "-insertion_eta": "0.5"})
+refuses("sizes that cannot be written", 74, ["-error_size_field", "no_such_folder"],
+        {"-error_estimate": "", "-error_target": "0.1", "-error_size_field": "no_such_folder/s.pos"})
 refuses("sizes without a target", 64, ["-error_size_field", "-error_target"],
         {"-error_size_field": "sizes.pos"})
 refuses("words for a number", 64, ["-time_step", "fast"], {"-time_step": "fast"})
