@@ -7,12 +7,11 @@
 // 3 to 5 of the step: rows, the dense problem, the correction.
 namespace trocar::driver {
 Simulation::Pass Simulation::constrained_step(const State& past, const core::TimeStep& now,
-                                              const tissue::FreeMotion& tissue, double tolerance,
+                                              const tissue::FreeMotion& tissue, double residual,
                                               const cavity::Shape& walls, State& next,
                                               core::VecX& last, StepReport& report)
 {
   Pass pass;
-  pass.tolerance = tolerance;
   std::vector<needle::Linearised> needles;
   for (std::size_t i = 0; i < needles_.size(); ++i)
     needles.push_back(needles_[i].linearise(past.needles[i], next.needles[i], now));
@@ -23,6 +22,7 @@ Simulation::Pass Simulation::constrained_step(const State& past, const core::Tim
     pass.rows.of_cavities =
         cavities_->add_rows(next.cavities, walls, next.tissue.u, now, pass.rows.set);
   pass.probes = pass.rows.set.probes();
+  pass.tolerance = lag_tolerance(now, residual, !pass.rows.set.empty());
   const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
   if (last.size() != pass.rows.set.size()) last = pass.rows.set.starts();
   const bool stale =
@@ -135,16 +135,18 @@ tissue::Push Simulation::push_of(const Pass& pass) const
   return push;
 }
 
-/// Of a step that is iterated anyway, a linearisation need only lead on: well beyond what the last
-/// one left, or one sweep with an older factor would pass for it again and again and lead nowhere.
-/// Under pressures that follow it does so by the square of that, so that Newton's rate is kept.
-double Simulation::lag_tolerance(const core::TimeStep& now, double residual) const
+/// Of a step that is iterated anyway, a linearisation need only lead on: beside forces of rows,
+/// well beyond what the last one left, or one sweep with an older factor would pass for it again
+/// and again and lead nowhere. Under pressures that follow it does so by the square of that, so
+/// that Newton's rate is kept.
+double Simulation::lag_tolerance(const core::TimeStep& now, double residual, bool rows) const
 {
-  constexpr double leads_on = 1e-4, least = 1e-10, part = 0.1;
+  constexpr double least = 1e-10, part = 0.1;
   const bool follows = cavities_ && cavities_->follows();
-  if (!follows && !now.is_static && scenario_.time.newton_max == 1)
-    return scenario_.tissue.lag_tolerance;
-  if (!std::isfinite(residual)) return leads_on;
+  const bool iterated = now.is_static || scenario_.time.newton_max > 1;
+  const double lag = scenario_.tissue.lag_tolerance;
+  const double leads_on = follows ? 1e-4 : std::max(lag, iterated ? 1e-4 : 0.0);
+  if (!(follows || (iterated && rows)) || !std::isfinite(residual)) return leads_on;
   return std::clamp(follows ? residual * residual : part * residual, least, leads_on);
 }
 

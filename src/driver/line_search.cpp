@@ -17,35 +17,39 @@ double Simulation::unbalanced(const State& past, const fem::OwnedField& u,
   return space_.norm(r) / (scale + space_.norm(more));
 }
 
-// Half of the increment, a quarter, ...: the first on which no element is inside out and the
-// residual is below the one before it. Forces of needles and cavities come in along the line, so
-// that the residual falls at first wherever the tangent is that of the forces; rows that begin to
-// hold or slip are no reason for it to fall, then the whole increment stays. False when even the
-// shortest turns elements inside out.
-bool Simulation::shorten(const State& past, const core::TimeStep& now, const Pass& pass,
-                         const Iterate& before, const fem::OwnedField& forces, cavity::Shape& walls,
-                         State& next, double& residual) const
+// Half of the increment, a quarter, ...: the first on which no element is inside out and less is
+// unbalanced than before it. Forces of needles and cavities come in along the line, so that the
+// residual falls at first wherever the tangent is that of the forces; rows that begin to hold or
+// slip are no reason for it to fall, then the whole increment stays. False when even the shortest
+// turns elements inside out, or one increment after the other does.
+bool Simulation::shorten(const State& past, const core::TimeStep& now, bool upright,
+                         Iterate& before, fem::OwnedField& forces, cavity::Shape& walls,
+                         State& next, double& unbalanced_part) const
 {
-  constexpr int most_halvings = 4;
-  const fem::OwnedField whole = next.tissue.u;
-  bool found = false;
+  constexpr int most_halvings = 4, most_turnovers = 4;
+  before.turnovers = upright ? 0 : before.turnovers + 1;
+  if (before.turnovers > most_turnovers) return false;
+  const fem::OwnedField whole = next.tissue.u, all = forces;
+  bool possible = upright;
   double part = 1.0;
-  for (int halving = 0; halving < most_halvings && !found; ++halving) {
+  for (int halving = 0; halving < most_halvings; ++halving) {
     part *= 0.5;
     const fem::OwnedField u{before.u.value + part * (whole.value - before.u.value)};
     if (!tissue_.possible(u)) continue;
-    if (!pass.upright) next.tissue.u = u;
-    if (!std::isfinite(before.residual)) break;
-    const fem::OwnedField along{before.forces.value + part * (forces.value - before.forces.value)};
+    const bool first = !std::isfinite(before.unbalanced);  // nothing to compare with
+    fem::OwnedField along = all;
+    if (!first) along.value = before.forces.value + part * (all.value - before.forces.value);
     const double here = unbalanced(past, u, now, along);
-    if (!(here < before.residual)) continue;
+    const bool descends = first || here < before.unbalanced;
+    if (upright && !descends) continue;
+    possible = true;
     next.tissue.u = u;
-    residual = here;
-    found = true;
+    forces = std::move(along);
+    unbalanced_part = here;
+    if (descends) break;
   }
-  if (!pass.upright && !tissue_.possible(next.tissue.u)) return false;
-  walls = walls_of(next);
-  return true;
+  if (possible) walls = walls_of(next);
+  return possible;
 }
 
 }  // namespace trocar::driver

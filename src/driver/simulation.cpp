@@ -101,21 +101,22 @@ StepResult Simulation::step(const State& old, const core::TimeStep& step)
   Iterate before;
   for (int iteration = 1; iteration <= most; ++iteration) {
     if (most > 1) before.u = next.tissue.u;
-    before.residual = residual;
     const Pass pass = linearised_step(past, now, residual, walls, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
-    const fem::OwnedField forces =
-        most > 1 ? all_forces(pass, next, walls, now) : fem::OwnedField{};
-    if (pass.upright && (most == 1 || balanced(past, next, walls, now, pass, forces, residual))) {
+    fem::OwnedField forces = most > 1 ? all_forces(pass, next, walls, now) : fem::OwnedField{};
+    double rest = before.unbalanced;
+    if (most > 1 && pass.upright) rest = unbalanced(past, next.tissue.u, now, forces);
+    if (pass.upright && (most == 1 || balanced(past, next, walls, now, pass, rest, residual))) {
       accept(old, past, now, pass, walls, next, report);
       return {std::move(next), std::move(report), {}};
     }
-    const bool overshoots = !pass.upright || residual > before.residual;
-    if (most == 1 ||
-        (overshoots && !shorten(past, now, pass, before, forces, walls, next, residual)))
+    const bool overshoots = rest > std::max(before.unbalanced, balance_tolerance);
+    if ((!pass.upright || overshoots) &&
+        (most == 1 || !shorten(past, now, pass.upright, before, forces, walls, next, rest)))
       return StepResult::rejected("an element of the tissue would turn inside out");
-    before.forces = forces;
+    before.forces = std::move(forces);
+    before.unbalanced = rest;
   }
   const std::string what = residual <= balance_tolerance
                                ? "the gaps of the rows stay open"
@@ -135,13 +136,12 @@ Simulation::Pass Simulation::linearised_step(const State& past, const core::Time
   if (cavities_) load = cavities_->load(next.cavities, walls, now);
   const tissue::FreeMotion tissue =
       tissue_.free_motion(past.tissue, next.tissue.u, now, load,  // 2 each body alone
-                          std::isfinite(residual));
+                          report.linearisations > 0);
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
   for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
-    pass = constrained_step(past, now, tissue, lag_tolerance(now, residual), walls, next, last,
-                            report);  // 3 to 5
+    pass = constrained_step(past, now, tissue, residual, walls, next, last, report);  // 3 to 5
     if (!pass.trouble) walls = walls_of(next);
     if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
@@ -202,11 +202,11 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
 }
 
 bool Simulation::balanced(const State& past, const State& next, const cavity::Shape& walls,
-                          const core::TimeStep& now, const Pass& pass,
-                          const fem::OwnedField& forces, double& residual) const
+                          const core::TimeStep& now, const Pass& pass, double rest,
+                          double& residual) const
 {
   const bool pushed = pass.lambda.lambda.size() > 0;
-  residual = unbalanced(past, next.tissue.u, now, forces);
+  residual = rest;
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
     // are below round-off.

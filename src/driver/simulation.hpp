@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -160,14 +161,15 @@ class Simulation
   struct Iterate
   {
     fem::OwnedField u, forces;  ///< place, and forces of needles and cavities on the tissue [N]
-    double residual = 0.0;      ///< see unbalanced; infinite before the first
+    double unbalanced = std::numeric_limits<double>::infinity();  ///< there
+    int turnovers = 0;  ///< increments in a row that turned elements inside out
   };
 
   const State& past_of(const State& old, core::TimeStep& now, State& extrapolated) const;
   Pass linearised_step(const State& past, const core::TimeStep& now, double residual,
                        cavity::Shape& walls, State& next, core::VecX& last, StepReport& report);
   Pass constrained_step(const State& past, const core::TimeStep& now,
-                        const tissue::FreeMotion& tissue, double tolerance,
+                        const tissue::FreeMotion& tissue, double residual,
                         const cavity::Shape& walls, State& next, core::VecX& last,
                         StepReport& report);
   void meet_frozen_laws(const core::TimeStep& now, const tissue::FreeMotion& tissue,
@@ -198,15 +200,14 @@ class Simulation
                StepReport& report);
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
   tissue::Push push_of(const Pass& pass) const;
-  double lag_tolerance(const core::TimeStep& now, double residual) const;
+  double lag_tolerance(const core::TimeStep& now, double residual, bool rows) const;
   bool balanced(const State& past, const State& next, const cavity::Shape& walls,
-                const core::TimeStep& now, const Pass& pass, const fem::OwnedField& forces,
-                double& residual) const;
+                const core::TimeStep& now, const Pass& pass, double rest, double& residual) const;
   double unbalanced(const State& past, const fem::OwnedField& u, const core::TimeStep& now,
                     const fem::OwnedField& forces) const;
-  bool shorten(const State& past, const core::TimeStep& now, const Pass& pass,
-               const Iterate& before, const fem::OwnedField& forces, cavity::Shape& walls,
-               State& next, double& residual) const;
+  bool shorten(const State& past, const core::TimeStep& now, bool upright, Iterate& before,
+               fem::OwnedField& forces, cavity::Shape& walls, State& next,
+               double& unbalanced_part) const;
   void accept(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
               const cavity::Shape& walls, State& next, StepReport& report) const;
   void account(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
