@@ -28,6 +28,13 @@ class Failure : public std::runtime_error
   ExitCode code_;
 };
 
+/// A linear solve that stopped short of its tolerance (70). Thrown on every rank.
+class Unsolved : public Failure
+{
+ public:
+  explicit Unsolved(const std::string& line) : Failure(ExitCode::solver, line) {}
+};
+
 inline Failure option_error(const std::string& line)
 {
   return {ExitCode::options, line};

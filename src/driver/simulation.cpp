@@ -130,7 +130,7 @@ StepResult Simulation::step(const State& old, const core::TimeStep& step)
 Simulation::Pass Simulation::linearised_step(const State& past, const core::TimeStep& now,
                                              double residual, cavity::Shape& walls, State& next,
                                              core::VecX& last, StepReport& report)
-{
+try {
   Pass pass;
   fem::Load load;
   if (cavities_) load = cavities_->load(next.cavities, walls, now);
@@ -150,6 +150,12 @@ Simulation::Pass Simulation::linearised_step(const State& past, const core::Time
   pass.upright = tissue_.possible(next.tissue.u);
   for (const needle::NeedleState& needle : next.needles)
     if (!needle.finite()) pass.trouble = "a needle's shape is not finite";
+  return pass;
+} catch (const core::Unsolved& failure) {  // as a tangent without factor: a smaller step may do
+  if (!scenario_.tissue.exact_tangent()) throw;
+  Pass pass;
+  pass.trouble = "the exact tangent was not solved with (an instability, or too large a step): " +
+                 std::string(failure.what());
   return pass;
 }
 

@@ -183,9 +183,9 @@ void LinearSystem::check_converged(const char* what) const
   if (reason > 0) return;
   PetscInt iterations = 0;
   TROCAR_PETSC(KSPGetIterationNumber(ksp_.get(), &iterations));
-  throw core::solver_error(std::string(what) + ": the linear solver (" + describe() +
-                           ") did not converge: " + KSPConvergedReasons[reason] + " after " +
-                           std::to_string(iterations) + " iterations");
+  throw core::Unsolved(std::string(what) + ": the linear solver (" + describe() +
+                       ") did not converge: " + KSPConvergedReasons[reason] + " after " +
+                       std::to_string(iterations) + " iterations");
 }
 
 OwnedField LinearSystem::solve(const OwnedField& b)

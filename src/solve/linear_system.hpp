@@ -32,7 +32,7 @@ class LinearSystem
   /// Failure (70). Starts a new version. Collective.
   void set_operator(const fem::BlockMatrix& values);
 
-  /// A⁻¹ b [m]; b in newtons, zero or the scaled prescribed value on fixed dofs. Failure (70) when
+  /// A⁻¹ b [m]; b in newtons, zero or the scaled prescribed value on fixed dofs. Unsolved (70) when
   /// the Krylov solver does not converge. Collective.
   OwnedField solve(const OwnedField& b);
 
