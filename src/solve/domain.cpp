@@ -28,16 +28,25 @@ struct Entry
   long long source;
 };
 
+/// Entries by one of their two numbers below `size`; those with the same one stay as they are.
+std::vector<Entry> sorted_by(int Entry::*number, const std::vector<Entry>& entries, int size)
+{
+  std::vector<std::size_t> place(at(size) + 1, 0);
+  for (const Entry& entry : entries) ++place[at(entry.*number) + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  std::vector<Entry> sorted(entries.size());
+  for (const Entry& entry : entries) sorted[place[at(entry.*number)]++] = entry;
+  return sorted;
+}
+
 /// The pattern of entries in any order, and their sources in its order.
 SymmetricPattern lay_out(std::vector<Entry> entries, int size, std::vector<long long>& source)
 {
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.column != b.column ? a.column < b.column : a.row < b.row;
-  });
+  entries = sorted_by(&Entry::column, sorted_by(&Entry::row, entries, size), size);
   SymmetricPattern pattern;
-  pattern.start.assign(static_cast<std::size_t>(size) + 1, 0);
+  pattern.start.assign(at(size) + 1, 0);
   for (const Entry& entry : entries) {
-    ++pattern.start[static_cast<std::size_t>(entry.column) + 1];
+    ++pattern.start[at(entry.column) + 1];
     pattern.row.push_back(entry.row);
     source.push_back(entry.source);
   }
@@ -103,11 +112,10 @@ struct Builder
   const WholePattern& whole;
   const Graph neighbours;
   Dissection result;
-  std::vector<int> home;   ///< by node
-  std::vector<int> index;  ///< by whole dof: in its domain, or in the interface
-  std::vector<std::vector<int>>
-      open_index;                           ///< by rank and interface dof: dof of the domain, or -1
-  std::vector<std::vector<Entry>> entries;  ///< by rank
+  std::vector<int> home;                     ///< by node
+  std::vector<int> index;                    ///< by whole dof: in its domain, or in the interface
+  std::vector<std::vector<int>> open_index;  ///< by rank and interface dof: dof of the domain
+  std::vector<std::vector<Entry>> entries;   ///< by rank
 
   explicit Builder(const WholePattern& w)
       : whole(w), neighbours(graph_of(w)), index(w.free.size(), -1), entries(at(w.ranks()))
@@ -236,9 +244,8 @@ struct Builder
     }
   }
 
-  /// Nested dissection of the domain's nodes, the graph of which has nine times fewer edges than
-  /// that of its dofs and gives the same fill; those in `last` after them, and the open ones at the
-  /// end.
+  /// Nested dissection of the domain's nodes (as good as that of its dofs, with a ninth of the
+  /// edges); those in `last` after them, and the open ones at the end.
   std::vector<int> order(int rank, const std::vector<int>& last) const
   {
     const Domain& domain = result.domain[at(rank)];
