@@ -42,8 +42,8 @@ def arguments():
     return given, options
 
 
-def scaled_field(file, scale):
-    """The size field in the geometry's own unit; its smallest and largest size there.
+def scaled_field(file, scale, factor):
+    """The size field times `factor` in the geometry's own unit; its smallest and largest size there.
 
     The program writes metres, after -mesh_scale; the field lies on the undeformed mesh.
     """
@@ -51,7 +51,7 @@ def scaled_field(file, scale):
 
     def rewrite(found):
         place = [float(n) / scale for n in found[1].split(",")]
-        size = [float(n) / scale for n in found[2].split(",")]
+        size = [factor * float(n) / scale for n in found[2].split(",")]
         sizes.extend(size)
         return "SS(" + ",".join(f"{n:.9g}" for n in place) + "){" + ",".join(
             f"{n:.9g}" for n in size) + "}"
@@ -62,13 +62,18 @@ def scaled_field(file, scale):
     return copy, min(sizes), max(sizes)
 
 
-def adapted_mesh(scene, file, path):
-    """The geometry meshed with a size field; its path, or why there is none.
+def order(element):
+    """By how many powers of h the energy error of smooth stress falls."""
+    return 2 if element.startswith("p2") else 1
+
+
+def adapted_mesh(scene, file, path, factor):
+    """The geometry meshed with a size field times `factor`; its path, or why there is none.
 
     A geometry sets limits and fields of its own, which overrule what gmsh's command line says
     (-bgm is still cut off by Mesh.CharacteristicLengthMin): so it is included and then overruled.
     """
-    field, smallest, largest = scaled_field(file, scene.scale)
+    field, smallest, largest = scaled_field(file, scene.scale, factor)
     wrapper = path.with_suffix(".geo")
     wrapper.write_text(f'''Include "{scene.geometry}";
 Merge "{field}";
@@ -103,9 +108,13 @@ def one_run(scene, given, mesh, folder, way, step, field=None):
 
 
 def adapt(scene, given, folder):
-    """Runs until the target is met, the mesh cannot be made, or it grows too large."""
+    """Runs until the target is met, the mesh cannot be made, or it grows too large.
+
+    Gmsh's edges and sizes that change fast leave a mesh short of what its sizes were for: the next
+    ones are for less, from round to round until the target is met.
+    """
     path, failure = scene.mesh(given.start)
-    rows = []
+    rows, asked = [], 1.0  # asked: error that sizes are for, over the target
     for step in range(given.rounds + 1):
         if failure:
             print(f"round {step}: {failure}; stopped here")
@@ -114,7 +123,10 @@ def adapt(scene, given, folder):
         rows.append(one_run(scene, given, path, folder / f"adapted_{step}", "adapted", step, field))
         if rows[-1]["failure"] or rows[-1]["error"] <= given.target or step == given.rounds:
             break
-        path, failure = adapted_mesh(scene, field, folder / f"mesh_{step + 1}.msh")
+        if step > 0:
+            asked *= (given.target / rows[-1]["error"]) ** 0.5
+        factor = asked ** (1.0 / order(given.element))
+        path, failure = adapted_mesh(scene, field, folder / f"mesh_{step + 1}.msh", factor)
         if path and not failure:
             expected = rows[-1]["nodes"] / rows[-1]["tets"] * count_tets(path)
             if expected > given.most:
@@ -155,15 +167,16 @@ def uniform(scene, given, folder, adapted):
 
 def draw(path, scene, given, adapted, even):
     figure, axis = plt.subplots(figsize=(5.8, 4.4), constrained_layout=True)
+    even = sorted(even, key=lambda r: r["nodes"])  # the adapted ones as one came from the other
     for rows, style, label in ((even, "s--", "uniform"), (adapted, "o-", "adapted")):
-        good = sorted((r for r in rows if not r["failure"]), key=lambda r: r["nodes"])
+        good = [r for r in rows if not r["failure"]]
         axis.loglog([r["nodes"] for r in good], [100 * r["error"] for r in good], style, ms=5,
                     label=label)
-    order = 2 if given.element.startswith("p2") else 1
+    power = order(given.element)
     ends = np.array([min(r["nodes"] for r in adapted + even if not r["failure"]),
                      max(r["nodes"] for r in adapted + even if not r["failure"])])
-    axis.loglog(ends, 100 * adapted[0]["error"] * (ends / adapted[0]["nodes"]) ** (-order / 3),
-                color="#6b6b6b", lw=0.9, ls="--", label=f"slope −{order}/3 (smooth stress)")
+    axis.loglog(ends, 100 * adapted[0]["error"] * (ends / adapted[0]["nodes"]) ** (-power / 3),
+                color="#6b6b6b", lw=0.9, ls="--", label=f"slope −{power}/3 (smooth stress)")
     axis.axhline(100 * given.target, color="#6b6b6b", lw=0.9, ls=":", label="target")
     axis.set(xlabel="nodes", ylabel="estimated error of the energy norm [%]",
              title=f"{scene.name}, {given.element}")
