@@ -135,14 +135,14 @@ def adapt(scene, given, folder):
 
 
 def count_tets(path):
-    """Tets of a mesh in Gmsh 4.1 text: blocks of elements of type 4."""
+    """Tets of a mesh in Gmsh 4.1 text: blocks of elements of type 4, or 11 with middles."""
     lines = iter(path.read_text().splitlines())
     while next(lines) != "$Elements":
         pass
     blocks, tets = int(next(lines).split()[0]), 0
     for _ in range(blocks):
         _, _, kind, count = (int(n) for n in next(lines).split())
-        tets += count if kind == 4 else 0
+        tets += count if kind in (4, 11) else 0
         for _ in range(count):
             next(lines)
     return tets

@@ -170,6 +170,10 @@ void LinearSystem::set_operator(const fem::BlockMatrix& values)
   ++ledger_->factorisations;
   PCFailedReason failed = PC_NOERROR;
   TROCAR_PETSC(PCGetFailedReason(pc, &failed));
+  if (space_->comm().any(failed == PC_FACTOR_OUTMEMORY || failed == PC_FACTOR_OTHER))
+    throw core::solver_error("no factor of the tissue operator by " + describe() +
+                             ", most likely for want of memory: take an iterative solver " +
+                             "(-tissue_ksp_type cg -tissue_pc_type gamg)");
   if (!space_->comm().all(failed == PC_NOERROR))
     throw core::solver_error(
         "the tissue operator could not be factored: it is singular or not "

@@ -35,7 +35,14 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
     return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked, "");
   const bool free_to_choose = provider == Provider::automatic;
   const int most_shared = free_to_choose ? most_interface : last_interface;
-  auto solver = std::make_unique<SupernodalStepSolver>(parts, most_shared);
+  std::unique_ptr<SupernodalStepSolver> solver;
+  try {
+    solver = std::make_unique<SupernodalStepSolver>(parts, most_shared);
+  } catch (const core::Failure& failure) {  // on every rank
+    if (!free_to_choose || failure.code() != core::ExitCode::solver) throw;
+    return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked,
+                                           std::string(", because ") + failure.what());
+  }
   const bool too_wide = solver->shared_dofs() > most_shared;
   if (!free_to_choose && too_wide)
     throw core::solver_error("the ranks would share " + std::to_string(solver->shared_dofs()) +

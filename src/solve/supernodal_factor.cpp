@@ -48,8 +48,10 @@ SupernodalFactor::SupernodalFactor(const SymmetricPattern& pattern, const std::v
   std::vector<int> given = order;
   handles_->L = cholmod_analyze_p(handles_->A, given.data(), nullptr, 0, &common);
   if (!handles_->L)
-    throw core::solver_error("the analysis of the tissue matrix failed (CHOLMOD status " +
-                             std::to_string(common.status) + ")");
+    throw core::solver_error(common.status == CHOLMOD_TOO_LARGE
+                                 ? "a supernodal factor would have more than 2^31 entries"
+                                 : "the analysis of the tissue matrix failed (CHOLMOD status " +
+                                       std::to_string(common.status) + ")");
   position_.resize(n);
   const int* permutation = handles_->integers(handles_->L->Perm);
   for (std::size_t k = 0; k < n; ++k)
