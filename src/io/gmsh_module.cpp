@@ -2,6 +2,8 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -221,8 +223,9 @@ void read_curves(mesh::Mesh& mesh, const RowOfTag& row_of, const Order& order)
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void trocar_read_gmsh(mesh::Mesh& mesh,
-                                                                        double scale)
+extern "C" __attribute__((visibility("default"))) ReadGmsh trocar_read_gmsh;
+
+void trocar_read_gmsh(mesh::Mesh& mesh, double scale)
 {
   const GmshSession session;
   // Gmsh 4.8 throws std::string, which no handler of std::exception sees.

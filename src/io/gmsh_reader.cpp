@@ -26,7 +26,7 @@ std::string file_hash(const std::string& file)
 }
 
 /// The module around Gmsh's library, loaded when the first mesh is read and kept. With the modeller
-/// behind it, it takes as long to load as all else of the program: only a rank that reads pays.
+/// behind it, it takes twice as long to load as PETSc: only a rank that reads pays.
 /// RTLD_DEEPBIND has it find its names in itself first: quicker, and never our Eigen, which is
 /// compiled for another CPU. Sanitizers cannot have that.
 ReadGmsh* gmsh_module()

@@ -42,7 +42,7 @@ std::vector<Entry> sorted_by(int Entry::*number, const std::vector<Entry>& entri
 /// The pattern of entries in any order, and their sources in its order.
 SymmetricPattern lay_out(std::vector<Entry> entries, int size, std::vector<long long>& source)
 {
-  entries = sorted_by(&Entry::column, sorted_by(&Entry::row, entries, size), size);
+  for (auto number : {&Entry::row, &Entry::column}) entries = sorted_by(number, entries, size);
   SymmetricPattern pattern;
   pattern.start.assign(at(size) + 1, 0);
   for (const Entry& entry : entries) {
@@ -114,7 +114,7 @@ struct Builder
   Dissection result;
   std::vector<int> home;                     ///< by node
   std::vector<int> index;                    ///< by whole dof: in its domain, or in the interface
-  std::vector<std::vector<int>> open_index;  ///< by rank and interface dof: dof of the domain
+  std::vector<std::vector<int>> open_index;  ///< by rank and interface dof: the domain's, or -1
   std::vector<std::vector<Entry>> entries;   ///< by rank
 
   explicit Builder(const WholePattern& w)
