@@ -204,7 +204,7 @@ def main():
             written.append("cavities.png")
         if plot_cut(run, folder):
             written.append("cut.png")
-    print("plotted", ", ".join(f"{folder}/{name}" for name in written) or "nothing")
+    print("pictures:", " ".join(f"{folder}/{name}" for name in written) or "none")
 
 
 main()

@@ -23,8 +23,9 @@ def run(options_file, folder, changes, ranks=1):
     words = []
     for name, value in changes.items():
         words += [f"-{name}", str(value)]
+    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     subprocess.run(
-        ["mpirun", "-n", str(ranks), "build/trocar", "-options_file", f"options/{options_file}",
+        [*launcher, "build/trocar", "-options_file", f"options/{options_file}",
          "-output_dir", str(folder), "-quiet", *words], cwd=ROOT, check=True)
     return h5py.File(folder / "run.h5")
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "cavity/cavities.hpp"
+#include "core/dense.hpp"
 #include "core/words.hpp"
 
 // Pressures of frozen cavities: the load does not follow the wall but the volume is exact, so that
@@ -128,12 +129,12 @@ NextPressures Cavities::next_pressures(const State& state, const Shape& shape,
     }
     // V must grow with the pressure on the way from the last one.
     const MatX symmetric = 0.5 * (here.slope + here.slope.transpose());
-    if (Eigen::LLT<MatX>(symmetric).info() != Eigen::Success)
+    if (!core::Cholesky(symmetric).regular())
       return trouble(here,
                      "its volume does not grow with the pressure any more (limit point near p = " +
                          core::shown(p[here.at] + change[here.at]) + " Pa)");
     before = here.worst;
-    step = here.slope.partialPivLu().solve(-here.volume);
+    step = core::solve_square(here.slope, -here.volume);
     change += step;
     if (!to_the_root) break;
   }

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/dense.hpp"
 #include "law/problem.hpp"
 #include "solve/isolated_compliance.hpp"
 
@@ -89,8 +90,8 @@ class Set
 struct SmallBody
 {
   int held = 0;
-  Eigen::LLT<core::MatX> factor;  ///< of A_n on its free dofs
-  core::VecX free_increment;      ///< A_n⁻¹ r on its free dofs [m, rad]
+  core::Cholesky factor;      ///< of A_n on its free dofs
+  core::VecX free_increment;  ///< A_n⁻¹ r on its free dofs [m, rad]
 };
 
 }  // namespace trocar::constraint

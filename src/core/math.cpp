@@ -26,7 +26,14 @@ Vec3 rotation_log(const Mat3& R)
 
 Mat3 rotation_between(const Vec3& a, const Vec3& b)
 {
-  return Eigen::Quaterniond::FromTwoVectors(a, b).toRotationMatrix();
+  const double cosine = a.dot(b);
+  if (cosine < -1.0 + 1e-12) {
+    const Vec3 axis = frame_along(a).col(1);
+    return 2.0 * axis * axis.transpose() - Mat3::Identity();
+  }
+  const double s = std::sqrt(2.0 * (1.0 + cosine));
+  const Vec3 half = a.cross(b) / s;  // the axis times the sine of half the angle
+  return Eigen::Quaterniond(0.5 * s, half.x(), half.y(), half.z()).toRotationMatrix();
 }
 
 Mat3 frame_along(const Vec3& t)

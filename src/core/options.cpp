@@ -46,10 +46,10 @@ std::string range_text(const OptionSpec& spec)
   const bool high = std::isfinite(spec.high);
   if (!low && !high) return "";
   if (low && high)
-    return (spec.low_open ? "(" : "[") + shown(spec.low) + ", " + shown(spec.high) +
+    return std::string(spec.low_open ? "(" : "[") + shown(spec.low) + ", " + shown(spec.high) +
            (spec.high_open ? ")" : "]");
-  if (low) return (spec.low_open ? "> " : ">= ") + shown(spec.low);
-  return (spec.high_open ? "< " : "<= ") + shown(spec.high);
+  if (low) return std::string(spec.low_open ? "> " : ">= ") + shown(spec.low);
+  return std::string(spec.high_open ? "< " : "<= ") + shown(spec.high);
 }
 
 Options::Options(const std::vector<OptionSpec>& table, std::map<std::string, OptionValue> given)

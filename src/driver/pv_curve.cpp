@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/dense.hpp"
 #include "core/words.hpp"
 
 namespace trocar::driver {
@@ -57,7 +58,7 @@ VecX straight_pieces(const std::vector<Point>& points, int pieces)
     hats(i, piece + 1) = at - piece;
     p[i] = point.pressure;
   }
-  return hats * hats.completeOrthogonalDecomposition().solve(p);
+  return hats * core::least_squares(hats, p);
 }
 
 /// Curve and fits into run.h5, slope and R² of the line into the log.

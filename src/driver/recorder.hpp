@@ -21,11 +21,10 @@ class Recorder
   void record(const Simulation& simulation, const State& state, const StepReport& report, int step,
               double seconds, bool with_fields);
 
-  /// Collective.
   /// A dataset of its own in run.h5. Collective.
   void table(const Simulation& simulation, const std::string& path,
              const std::vector<double>& values, const std::string& units);
-  void close(const Simulation& simulation);
+  void close(const Simulation& simulation);  ///< collective
 
  private:
   std::optional<io::Results> results_;  ///< on rank 0 only

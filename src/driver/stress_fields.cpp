@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/dense.hpp"
 #include "mesh/quadratic.hpp"
 
 namespace trocar::driver {
@@ -29,8 +30,7 @@ Vec3 principal_values(const Six& s)
 {
   core::Mat3 tensor;
   tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-  const Eigen::SelfAdjointEigenSolver<core::Mat3> eigen(tensor, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().reverse();
+  return core::symmetric_eigenvalues(tensor).reverse();
 }
 
 NodalStress stress_at_nodes(const mesh::Mesh& mesh, const tissue::StressField& field, int tet)

@@ -38,7 +38,8 @@ void rename_into_place(const std::string& from, const std::string& to)
 {
   if (std::rename(from.c_str(), to.c_str()) != 0)
     throw core::output_error("cannot rename " + from + " to " + to);
-  base::sync_to_disk(fs::path(to).parent_path().string());
+  const fs::path folder = fs::path(to).parent_path();
+  base::sync_to_disk(folder.empty() ? "." : folder.string());
 }
 
 std::vector<std::int64_t> as_integers(const std::vector<double>& values)

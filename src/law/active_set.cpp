@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/dense.hpp"
 #include "law/box_qp.hpp"
 
 namespace trocar::law {
@@ -11,7 +12,7 @@ double energy(const MatX& S, const VecX& s, const VecX& x)
   return x.dot(0.5 * (S * x) + s);
 }
 
-/// Minimiser over the free rows with the others held; LDLT takes over when Cholesky meets a
+/// Minimiser over the free rows with the others held; the least-norm one when Cholesky meets a
 /// vanishing pivot.
 VecX minimise_free(const MatX& S, const VecX& s, const VecX& x, const std::vector<int>& free)
 {
@@ -20,10 +21,9 @@ VecX minimise_free(const MatX& S, const VecX& s, const VecX& x, const std::vecto
   const VecX rhs = -(s + S * held)(free);
   const MatX S_ff = S(free, free);
   VecX y = x;
-  const Eigen::LLT<MatX> cholesky(S_ff);
-  if (cholesky.info() == Eigen::Success) y(free) = cholesky.solve(rhs).eval();
-  if (cholesky.info() != Eigen::Success || !y.allFinite())
-    y(free) = S_ff.completeOrthogonalDecomposition().solve(rhs).eval();
+  const core::Cholesky cholesky(S_ff);
+  if (cholesky.regular()) y(free) = cholesky.solve(rhs);
+  if (!cholesky.regular() || !y.allFinite()) y(free) = core::least_squares(S_ff, rhs);
   return y;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense.hpp"
+
 namespace trocar::law {
 namespace {
 
@@ -22,11 +24,11 @@ RowSplit split_rows(const Problem& problem)
 MatX pseudo_inverse(const MatX& matrix, double cut)
 {
   if (matrix.rows() == 0) return matrix;
-  const Eigen::SelfAdjointEigenSolver<MatX> eigen(matrix);
-  const double smallest = cut * eigen.eigenvalues().tail<1>()[0];
-  const VecX inverse = eigen.eigenvalues().unaryExpr(
+  const core::SymmetricEigen eigen = core::symmetric_eigen(matrix);
+  const double smallest = cut * eigen.values.tail<1>()[0];
+  const VecX inverse = eigen.values.unaryExpr(
       [smallest](double value) { return value > smallest ? 1.0 / value : 0.0; });
-  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
 }
 
 Condensed::Condensed(const Problem& problem)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense.hpp"
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
 #include "law/condensed.hpp"
@@ -43,7 +44,7 @@ VecX solve_group(const Problem& problem, const Group& group, const VecX& lambda,
   const auto solve_free = [&] {
     if (free.empty()) return;
     const VecX rhs = -(held + W * next)(free);
-    next(free) = MatX(W(free, free)).completeOrthogonalDecomposition().solve(rhs).eval();
+    next(free) = core::least_squares(W(free, free), rhs);
   };
   solve_free();
   for (int i = 0; i < n; ++i) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense.hpp"
 #include "law/box_qp.hpp"
 
 namespace trocar::law {
@@ -33,13 +34,13 @@ double complementarity(const Point& p)
 }
 
 /// Newton direction towards u∘y = target_u, v∘z = target_v; `dual` = S x + s - y + z.
-Point direction(const Eigen::LLT<MatX>& factor, const Point& p, const VecX& dual,
+Point direction(const core::Cholesky& factor, const Point& p, const VecX& dual,
                 const VecX& target_u, const VecX& target_v)
 {
   Point d;
   const VecX to_y = target_u.cwiseQuotient(p.u) - p.y;
   const VecX to_z = target_v.cwiseQuotient(p.v) - p.z;
-  d.x = factor.solve(-dual + to_y - to_z);
+  d.x = factor.solve(VecX(-dual + to_y - to_z));
   d.u = d.x;
   d.v = -d.x;
   d.y = to_y - p.y.cwiseQuotient(p.u).cwiseProduct(d.x);
@@ -65,7 +66,7 @@ MatX barrier(const MatX& S, const Point& p)
 }
 
 /// Mehrotra: how far the affine step gets says how much to centre, and what it leaves is corrected.
-Point corrected_direction(const Eigen::LLT<MatX>& factor, const Point& p, const VecX& dual)
+Point corrected_direction(const core::Cholesky& factor, const Point& p, const VecX& dual)
 {
   const VecX zero = VecX::Zero(p.x.size());
   const Point affine = direction(factor, p, dual, zero, zero);
@@ -145,9 +146,9 @@ BoxSolution interior_point(const MatX& S_in, const VecX& s_in, const VecX& F_in,
     const VecX dual = S * p.x + s - p.y + p.z;
     result.finished = gap * box_residual(S, s, F, on_bounds(p, F)) <= tolerance;
     if (result.finished) break;
-    const Eigen::LLT<MatX> factor(barrier(S, p));
+    const core::Cholesky factor(barrier(S, p));
     ++result.factorisations;
-    if (factor.info() != Eigen::Success) break;
+    if (!factor.regular()) break;
     const Point d = corrected_direction(factor, p, dual);
     move_centred(p, d);
   }

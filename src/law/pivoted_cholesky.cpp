@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/dense.hpp"
+
 namespace trocar::law {
 
 using core::MatX;
@@ -61,12 +63,9 @@ VecX PivotedCholesky::solve(VecX b) const
 
 VecX PivotedCholesky::onto_range(const VecX& x) const
 {
-  const auto L = factor_.leftCols(rank_).triangularView<Eigen::Lower>().toDenseMatrix();
-  const Eigen::HouseholderQR<MatX> qr(L);
-  VecX y = qr.householderQ().adjoint() * x(order_);
-  y.tail(y.size() - rank_).setZero();
+  const MatX L = factor_.leftCols(rank_).triangularView<Eigen::Lower>();
   VecX result(x.size());
-  result(order_) = qr.householderQ() * y;
+  result(order_) = core::project_onto_range(L, x(order_));
   return result;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense.hpp"
+
 namespace trocar::law {
 
 double kkt_residual(const Problem& problem, const VecX& lambda)
@@ -48,7 +50,7 @@ VecX response(const Problem& problem, const VecX& lambda, const VecX& dg)
   if (held.empty()) return change;
   MatX W = problem.W(held, held);
   if (problem.softness.size() > 0) W.diagonal() += problem.softness(held);
-  change(held) = -W.completeOrthogonalDecomposition().solve(dg(held).eval());
+  change(held) = -core::least_squares(W, dg(held));
   return change;
 }
 

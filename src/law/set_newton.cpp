@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense.hpp"
 #include "law/box_qp.hpp"
 
 namespace trocar::law {
@@ -21,7 +22,7 @@ Sets sets_of(const VecX& x, const VecX& F)
 struct Factor
 {
   std::vector<int> free;
-  Eigen::LLT<MatX> cholesky;
+  core::Cholesky cholesky;
 
   /// False when H is not positive definite there, by round-off.
   bool make(const MatX& H, const Sets& sets)
@@ -31,7 +32,7 @@ struct Factor
       if (sets[static_cast<std::size_t>(i)] == 0) free.push_back(i);
     if (free.empty()) return true;
     cholesky.compute(H(free, free));
-    return cholesky.info() == Eigen::Success;
+    return cholesky.regular();
   }
 };
 
@@ -43,7 +44,7 @@ VecX minimise(const MatX& H, const VecX& h, const VecX& F, const Sets& sets, con
     if (const int side = sets[static_cast<std::size_t>(i)]; side != 0) x[i] = side * F[i];
   if (factor.free.empty()) return x;
   const VecX gradient = H * x + h;
-  x(factor.free) -= factor.cholesky.solve(gradient(factor.free));
+  x(factor.free) -= factor.cholesky.solve(VecX(gradient(factor.free)));
   return x;
 }
 

@@ -106,7 +106,7 @@ Linearised Needle::linearise(const NeedleState& old, const NeedleState& iterate,
   }
   const Eigen::Index free = dofs() - linear.held;
   linear.factor.compute(linear.A.bottomRightCorner(free, free));
-  linear.free_increment = linear.factor.solve(linear.r.tail(free));
+  linear.free_increment = linear.factor.solve(VecX(linear.r.tail(free)));
   return linear;
 }
 
@@ -114,7 +114,8 @@ VecX Needle::increment(const Linearised& linear, const VecX& coupling) const
 {
   VecX d = VecX::Zero(dofs());
   const Eigen::Index free = dofs() - linear.held;
-  if (free > 0) d.tail(free) = linear.free_increment - linear.factor.solve(coupling.tail(free));
+  if (free > 0)
+    d.tail(free) = linear.free_increment - linear.factor.solve(VecX(coupling.tail(free)));
   return d;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dense.hpp"
 #include "core/time_step.hpp"
 #include "needle/beam_element.hpp"
 #include "needle/motion.hpp"
@@ -41,11 +42,11 @@ struct NeedleState
 /// The base (first `held` dofs) follows the prescribed motion.
 struct Linearised
 {
-  int held = 6;  ///< 6 for a beam, all dofs for a rigid needle
-  MatX A;        ///< M/h² + K (dofs x dofs) [N/m ...]
-  VecX r;        ///< weight - internal - inertia forces (dofs) [N, N m]
-  Eigen::LLT<MatX> factor{MatX::Identity(1, 1)};  ///< of A on the free dofs, when there are any
-  VecX free_increment;                            ///< A⁻¹ r on the free dofs
+  int held = 6;           ///< 6 for a beam, all dofs for a rigid needle
+  MatX A;                 ///< M/h² + K (dofs x dofs) [N/m ...]
+  VecX r;                 ///< weight - internal - inertia forces (dofs) [N, N m]
+  core::Cholesky factor;  ///< of A on the free dofs, when there are any
+  VecX free_increment;    ///< A⁻¹ r on the free dofs
 };
 
 /// Energies of a needle, and the work of its weight from one state to the next [J].

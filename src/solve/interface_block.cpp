@@ -1,6 +1,7 @@
 #include "solve/interface_block.hpp"
 
 #include "base/blas.hpp"
+#include "core/dense.hpp"
 #include "core/failure.hpp"
 
 namespace trocar::solve {
@@ -8,8 +9,7 @@ namespace trocar::solve {
 void InterfaceBlock::factorise(core::MatX S)
 {
   L_ = std::move(S);
-  const Eigen::LLT<Eigen::Ref<core::MatX>> factor(L_);
-  if (factor.info() != Eigen::Success || !L_.diagonal().allFinite())
+  if (!core::cholesky_in_place(L_) || !L_.diagonal().allFinite())
     throw core::solver_error(
         "the tissue's operator is not positive definite: a body without supports (-fix), or "
         "elements that are nearly flat");

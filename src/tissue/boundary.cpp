@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/dense.hpp"
 #include "law/volume.hpp"
 #include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
@@ -89,8 +90,8 @@ void require_supports(const fem::Dirichlet& fixed, const mesh::Mesh& mesh)
       held[c] += motion * motion.transpose();
     }
   for (std::size_t c = 0; c < held.size(); ++c) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(held[c]);
-    if (eigen.eigenvalues()[0] <= 1e-10 * eigen.eigenvalues()[5])
+    const core::VecX seen = core::symmetric_eigenvalues(core::MatX(held[c]));
+    if (seen[0] <= 1e-10 * seen[5])
       throw core::option_error(
           "option -fix: the supports leave a rigid motion free, so a static solution does not "
           "exist" +

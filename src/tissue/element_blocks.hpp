@@ -4,7 +4,7 @@
 
 #include "fem/block_matrix.hpp"
 #include "fem/shape.hpp"
-#include "tissue/material.hpp"
+#include "tissue/energy.hpp"
 
 namespace trocar::tissue {
 

@@ -2,7 +2,8 @@
 
 #include "tissue/elements_of.hpp"
 
-// Forces, energies and stress of the tets: definitions for elements_of.cpp alone.
+// Forces, energies and stress of the tets: definitions for linear_tets.cpp and
+// quadratic_tets.cpp alone.
 namespace trocar::tissue {
 
 template <int N>

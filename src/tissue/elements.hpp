@@ -9,6 +9,7 @@
 
 namespace trocar::tissue {
 
+using core::Mat3;
 using fem::GhostedField;
 using fem::OwnedField;
 
@@ -55,7 +56,7 @@ struct Configuration
   std::vector<Mat3> G;  ///< displacement gradients and
   core::VecX p;         ///< pressures λθ [Pa], where the tangent depends on them
 
-  bool operator==(const Configuration&) const = default;
+  bool operator==(const Configuration& other) const;
 };
 
 /// Displacement with velocity and what else inertia acts on, w = a + α v.

@@ -6,6 +6,7 @@
 #include "core/polar.hpp"
 #include "fem/shape.hpp"
 #include "tissue/elements.hpp"
+#include "tissue/energy.hpp"
 #include "tissue/patches.hpp"
 
 namespace trocar::tissue {

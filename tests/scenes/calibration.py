@@ -22,7 +22,7 @@ OUTPUT = os.path.join(FOLDER, "fit")
 
 def script(*arguments, through=(sys.executable, os.path.join(ROOT, "scripts/calibration/main.py"))):
     return subprocess.run([*through, *map(str, arguments)], capture_output=True, text=True,
-                          timeout=60)
+                          timeout=600)
 
 
 def fitted(*arguments):

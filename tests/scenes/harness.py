@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
 import h5py
 import numpy as np
@@ -14,6 +15,8 @@ FOLDER = tempfile.mkdtemp(prefix="trocar_test_")
 MESHES = os.path.join(FOLDER, "meshes")
 os.makedirs(MESHES)
 problems = []
+refusals = []  # (what, code, words, run under way) of refusal()
+pool = ThreadPoolExecutor(4)  # mpirun waits a second for the other ranks of one that fails
 
 
 def structured(name, *arguments):
@@ -49,15 +52,15 @@ def options(file):
     return found
 
 
-def run(settings, ranks=1, arguments=(), timeout=120):
+def run(settings, ranks=1, arguments=(), timeout=900, environment=None):
     """Runs the program; settings is a dict of options. Gives the completed process. Tets are linear
     unless the settings say otherwise: most tests are about other things and are quicker so."""
     words = [] if "-tissue_element" in [*settings, *arguments] else ["-tissue_element", "p1"]
     for name, value in settings.items():
         words += [name] + ([value] if value != "" else [])
-    return subprocess.run(
-        ["mpirun", "-n", str(ranks), PROGRAM, *words, *arguments],
-        cwd=ROOT, capture_output=True, text=True, timeout=timeout)
+    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    return subprocess.run([*launcher, PROGRAM, *words, *arguments], cwd=ROOT, capture_output=True,
+                          text=True, timeout=timeout, env=environment)
 
 
 def completed(settings, ranks=1, **more):
@@ -79,15 +82,22 @@ def written(name, text):
 
 
 def refusal(scene):
-    """A check that changes of a scene are refused with a code and one line holding all words."""
+    """A check that changes of a scene are refused with a code and one line holding all words. Runs
+    beside others; finish() waits for it and says what came of it."""
     def refuses(what, code, words, changes, remove=(), ranks=(2,)):
         settings = {key: value for key, value in {**scene, **changes}.items() if key not in remove}
         for n in ranks:
-            process = run(settings, n, timeout=60)
-            lines = error_lines(process)
-            good = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
-            check(good, f"{what} on {n} ranks: {process.returncode} {lines}")
+            process = pool.submit(run, settings, n, environment=dict(os.environ))
+            refusals.append((f"{what} on {n} ranks", code, words, process))
     return refuses
+
+
+def check_refusals():
+    for what, code, words, future in refusals:
+        process = future.result()
+        lines = error_lines(process)
+        good = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
+        check(good, f"{what}: {process.returncode} {lines}")
 
 
 def histories(folder):
@@ -117,5 +127,6 @@ def error_lines(process):
 
 
 def finish():
+    check_refusals()
     shutil.rmtree(FOLDER, ignore_errors=True)
     raise SystemExit(1 if problems else 0)

@@ -49,7 +49,7 @@ def static_step(body, loads, gravity):
 
 def launch(name, deck):
     written(name + ".inp", deck)
-    process = subprocess.run(["ccx", name], cwd=FOLDER, capture_output=True, text=True, timeout=120)
+    process = subprocess.run(["ccx", name], cwd=FOLDER, capture_output=True, text=True, timeout=900)
     if process.returncode != 0:
         print(process.stdout[-2000:])
         raise SystemExit(f"ccx failed with {process.returncode}")

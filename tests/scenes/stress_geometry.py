@@ -26,7 +26,7 @@ def spacings(table, name, settings, distances=DISTANCES, expect="right", more=la
     table.case(f"{name}, raw crossings", reference, more(None), expect)
     for d in distances:
         run = attempt({**settings, "insertion_placement": "spacing", "insertion_spacing": d},
-                      timeout=300)
+                      timeout=1200)
         near = like(reference, 0.05, "crossings", displacement)
         table.case(f"{name}, {1e3 * d:g} mm", run, both(counted(d), more(d), near), expect)
 

@@ -73,7 +73,7 @@ class Run:
         return values.max() if len(values) else 0
 
 
-def attempt(settings, ranks=1, timeout=120):
+def attempt(settings, ranks=1, timeout=600):
     """Runs the program on settings (names without the dash); judges exit, streams and files."""
     harness_runs = len(os.listdir(harness.FOLDER))
     folder = os.path.join(harness.FOLDER, f"stress_{harness_runs}")
@@ -84,8 +84,9 @@ def attempt(settings, ranks=1, timeout=120):
         words += ["-" + name] + ([str(value)] if value != "" else [])
     try:
         # -q: no words of mpirun's own, so that stderr is the program's
-        process = subprocess.run(["mpirun", "-q", "-n", str(ranks), harness.PROGRAM, *words],
-                                 cwd=harness.ROOT, capture_output=True, text=True, timeout=timeout)
+        launcher = ["mpirun", "-q", "-n", str(ranks)] if ranks > 1 else []
+        process = subprocess.run([*launcher, harness.PROGRAM, *words], cwd=harness.ROOT,
+                                 capture_output=True, text=True, timeout=timeout)
     except subprocess.TimeoutExpired:
         return Run(-1, folder, "", [], [f"no end after {timeout} s"])
     run = Run(process.returncode, folder, process.stdout, process.stderr.splitlines())

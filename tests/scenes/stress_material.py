@@ -64,7 +64,7 @@ def needles_of_all_kinds(table):
     reference = attempt(block(time_step=0.2))
     for young in (2e13, 2e15):
         table.case(f"{young:g} Pa in 500 Pa", attempt(soft(young)), slides(2), "either")
-    table.case("500 elements", attempt(block(needle_elements=500, time_step=0.2), timeout=300),
+    table.case("500 elements", attempt(block(needle_elements=500, time_step=0.2), timeout=1200),
                both(slides(), like(reference, 0.02, "10 elements")))
     kinds = {f"radius {r:g} m": {"needle_radius": r} for r in (2e-4, 1e-4, 1e-6, 1e-9)}
     kinds["as soft as the tissue (5 kPa)"] = {"needle_young": 5e3}

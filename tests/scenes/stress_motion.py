@@ -17,7 +17,7 @@ def slow(h, **changes):
 def steps(table, sizes):
     reference = attempt(slow(2e-3))
     for h in sizes:
-        table.case(f"h = {h:g} s", attempt(slow(h), timeout=400),
+        table.case(f"h = {h:g} s", attempt(slow(h), timeout=1200),
                    both(slides(), like(reference, 0.03, "h = 2e-3 s")))
 
 
@@ -187,20 +187,20 @@ def all_slide(count):
 
 @scenario("many needles", quick=True)
 def twenty(table):
-    run = attempt(many(20, time_step=0.1), timeout=300)
+    run = attempt(many(20, time_step=0.1), timeout=1200)
     table.case("20 beams at once", run, all_slide(20))
 
 
 @scenario("many needles")
 def coincident(table):
-    one = attempt(many(20, time_step=0.1), timeout=300)
+    one = attempt(many(20, time_step=0.1), timeout=1200)
 
     def same(run):
         names = [f"n{n}" for n in range(20)]
         worst = max(relative(run.final("base_force", n), one.final("base_force", n)) for n in names)
         return worst <= 1e-6, f"forces {worst:.0e} from 1 rank"
-    table.case("20 beams, 3 ranks", attempt(many(20, time_step=0.1), ranks=3, timeout=400), same)
-    run = attempt(many(20, time_step=0.1, needle_model="rigid"), timeout=300)
+    table.case("20 beams, 3 ranks", attempt(many(20, time_step=0.1), ranks=3, timeout=1200), same)
+    run = attempt(many(20, time_step=0.1, needle_model="rigid"), timeout=1200)
     table.case("20 rigid needles", run, all_slide(20), "either")
     at = "0,0.0237,0.0229"
     for model in ("beam", "rigid"):

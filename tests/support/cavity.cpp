@@ -1,7 +1,5 @@
 #include "support/cavity.hpp"
 
-#include <cmath>
-
 #include "mesh/topology.hpp"
 
 namespace trocar::test {
@@ -55,6 +53,36 @@ driver::Scenario cavity_scenario(int n, int hole, cavity::Model model, cavity::S
   one.solver = solver;
   scenario.cavities.cavities = {one};
   return scenario;
+}
+
+void press(driver::Scenario& scenario, double depth)
+{
+  scenario.tissue.boundary.displacements = {{"z1", core::Vec3(0.0, 0.0, -depth), std::nullopt}};
+}
+
+void add_needle(driver::Scenario& scenario, double y)
+{
+  driver::Scenario with = needle_scenario({});
+  scenario.needles = with.needles;
+  scenario.needles[0].motion.entry = core::Vec3(0.0, y, 0.0273);
+  scenario.insertion = with.insertion;
+  scenario.tissue.materials[0].rayleigh_stiffness = 0.02;
+  scenario.time.analysis = driver::Analysis::dynamic;
+  scenario.time.step = 0.02;
+  scenario.time.end = 1.0;
+}
+
+driver::StepResult solved(driver::Simulation& simulation)
+{
+  driver::StepResult result = simulation.initial_state();
+  if (!result.state) throw core::solver_error(result.why);
+  return result;
+}
+
+driver::StepReport solved(const driver::Scenario& scenario)
+{
+  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  return solved(simulation).report;
 }
 
 }  // namespace trocar::test

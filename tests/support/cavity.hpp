@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "support/scene.hpp"
 
 namespace trocar::test {
@@ -18,5 +20,16 @@ driver::Scenario fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
 /// needle.
 driver::Scenario cavity_scenario(int n, int hole, cavity::Model model,
                                  cavity::Solver solver = cavity::Solver::newton);
+
+/// A plate bonded to the top that presses by this part of the block's height.
+void press(driver::Scenario& scenario, double depth);
+
+/// A rigid needle with friction straight through the block beside the cavity, or into it.
+void add_needle(driver::Scenario& scenario, double y);
+
+/// The start of a simulation's run; throws why it was rejected.
+driver::StepResult solved(driver::Simulation& simulation);
+/// The report of it, when the simulation itself is not looked at.
+driver::StepReport solved(const driver::Scenario& scenario);
 
 }  // namespace trocar::test

@@ -7,6 +7,7 @@
 int main(int argc, char** argv)
 {
   ::testing::InitGoogleTest(&argc, argv);
+  if (GTEST_FLAG_GET(list_tests)) return RUN_ALL_TESTS();
   MPI_Init(&argc, &argv);
   int verdict = 1;
   {

@@ -14,6 +14,11 @@ inline std::vector<insertion::TissueFriction> same(const insertion::Friction& fr
   return {{friction, friction}};
 }
 
+/// The block of `needle_scenario` in cells of 1 cm, and in smaller ones with their nodes moved
+/// about.
+inline const BlockShape plain{6, 4, 4, core::Vec3(0.06, 0.04, 0.04), 0.0};
+inline const BlockShape distorted{8, 5, 5, core::Vec3(0.06, 0.04, 0.04), 0.25};
+
 /// A needle through a block 6 x 4 x 4 cm, held below; a scenario that tests change as they like.
 driver::Scenario needle_scenario(const BlockShape& shape);
 

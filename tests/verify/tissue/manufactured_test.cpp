@@ -115,20 +115,23 @@ struct Errors
   double L2 = 0.0, H1 = 0.0;
 };
 
-Errors manufactured_errors(bool quadratic, Dilatation dilatation, double poisson, int n)
+/// f(x, shape functions, barycentric coordinates, weight) at the points of one tet.
+template <class F>
+void over_tet(const mesh::Mesh& mesh, int t, const F& f)
 {
-  const Manufactured exact{{1.0, poisson, 1.0, 0.0, 0.0}};
-  HeldCube body(quadratic, dilatation, exact.m, n);
-  const auto over_tet = [&](int t, const auto& f) {
-    const auto corner = mesh::corners(body.mesh, t);
-    integrate(mesh::tet_volume(body.mesh, t), [&](const Eigen::Vector4d& at, double weight) {
-      const Vec3 x = at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2] + at[3] * corner[3];
-      f(x, mesh::node_weights(body.mesh, at), at, weight);
-    });
-  };
+  const auto corner = mesh::corners(mesh, t);
+  integrate(mesh::tet_volume(mesh, t), [&](const Eigen::Vector4d& at, double weight) {
+    const Vec3 x = at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2] + at[3] * corner[3];
+    f(x, mesh::node_weights(mesh, at), at, weight);
+  });
+}
+
+/// The solution of the discrete problem, on every rank.
+fem::GlobalField solved(HeldCube& body, const Manufactured& exact)
+{
   fem::OwnedField load = body.space.zero();
   for (std::size_t e = 0; e < body.space.tets(); ++e)
-    over_tet(body.space.file_tet(e),
+    over_tet(body.mesh, body.space.file_tet(e),
              [&](const Vec3& x, const mesh::NodeWeights& N, const Eigen::Vector4d&, double weight) {
                const Vec3 f = weight * exact.body_force(x);
                Eigen::Index a = 0;
@@ -144,29 +147,38 @@ Errors manufactured_errors(bool quadratic, Dilatation dilatation, double poisson
   tissue::Configuration at;
   body.tissue.configure(body.space.with_ghosts(given), at);
   load.value -= body.tissue.operate_by_elements(at, 0.0, given).value;
-  const fem::GlobalField u = body.space.gather({given.value + body.tissue.answer(load).value});
+  return body.space.gather({given.value + body.tissue.answer(load).value});
+}
+
+Errors manufactured_errors(bool quadratic, Dilatation dilatation, double poisson, int n)
+{
+  const Manufactured exact{{1.0, poisson, 1.0, 0.0, 0.0}};
+  HeldCube body(quadratic, dilatation, exact.m, n);
+  const fem::GlobalField u = solved(body, exact);
   Errors errors;
-  for (int t = 0; t < body.mesh.tet_count(); ++t) {
+  const base::Comm& comm = body.space.comm();
+  for (int t = comm.rank(); t < body.mesh.tet_count(); t += comm.size()) {
     const fem::TetShape linear = fem::tet_shape(mesh::corners(body.mesh, t));
-    over_tet(t, [&](const Vec3& x, const mesh::NodeWeights& N, const Eigen::Vector4d& at,
-                    double weight) {
-      Vec3 value = -exact.u(x);
-      Mat3 gradient = -exact.gradient(x);
-      Eigen::Index a = 0;
-      for (int node : mesh::nodes_of(body.mesh, t)) {
-        value += N[a] * u.node(node);
-        const Vec3 by =
-            body.mesh.quadratic()
-                ? Vec3(linear.gradient * mesh::quadratic_derivatives(at).row(a).transpose())
-                : Vec3(linear.gradient.col(a));
-        gradient += u.node(node) * by.transpose();
-        ++a;
-      }
-      errors.L2 += weight * value.squaredNorm();
-      errors.H1 += weight * gradient.squaredNorm();
-    });
+    over_tet(
+        body.mesh, t,
+        [&](const Vec3& x, const mesh::NodeWeights& N, const Eigen::Vector4d& at, double weight) {
+          Vec3 value = -exact.u(x);
+          Mat3 gradient = -exact.gradient(x);
+          Eigen::Index a = 0;
+          for (int node : mesh::nodes_of(body.mesh, t)) {
+            value += N[a] * u.node(node);
+            const Vec3 by =
+                body.mesh.quadratic()
+                    ? Vec3(linear.gradient * mesh::quadratic_derivatives(at).row(a).transpose())
+                    : Vec3(linear.gradient.col(a));
+            gradient += u.node(node) * by.transpose();
+            ++a;
+          }
+          errors.L2 += weight * value.squaredNorm();
+          errors.H1 += weight * gradient.squaredNorm();
+        });
   }
-  return {std::sqrt(errors.L2), std::sqrt(errors.H1)};
+  return {std::sqrt(comm.sum(errors.L2)), std::sqrt(comm.sum(errors.H1))};
 }
 
 void expect_orders(const char* name, bool quadratic, Dilatation dilatation, double poisson,

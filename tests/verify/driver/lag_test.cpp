@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "support/scene.hpp"
 
 // Steps of turning tissue with the factor of an earlier step against the same run that factors in
@@ -10,8 +8,7 @@ namespace trocar {
 namespace {
 
 using core::Vec3;
-
-const test::BlockShape distorted{8, 5, 5, Vec3(0.06, 0.04, 0.04), 0.25};
+using test::distorted;
 
 /// A block sheared by 15 degrees within the run while a bending needle goes in.
 driver::Scenario sheared()

@@ -2,18 +2,14 @@
 #include <gtest/gtest.h>
 #include <petscdmplex.h>
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 #include "base/petsc.hpp"
 #include "core/failure.hpp"
 #include "io/gmsh_reader.hpp"
-#include "mesh/locator.hpp"
-#include "mesh/partition.hpp"
 #include "mesh/quadratic.hpp"
-#include "mesh/topology.hpp"
-#include "support/block.hpp"
 
 namespace trocar {
 namespace {
@@ -195,69 +191,6 @@ TEST(GmshReader, RefusesWhatCannotBeUsedOnEveryRank)
   const std::string whole = tet("0 0 1", "1 2 3 4");
   refuses(whole.substr(0, whole.size() - 60), "bad_test.msh");
   EXPECT_THROW(io::read_gmsh("no_such_file.msh", 1.0, comm), core::Failure);
-}
-
-TEST(Topology, BoundaryOfABlockIsClosedAndOutward)
-{
-  const mesh::Mesh mesh = test::block({4, 3, 2, Vec3(0.4, 0.3, 0.2), 0.2});
-  double volume = 0.0;
-  Vec3 sum = Vec3::Zero();
-  for (const auto& face : mesh::boundary_faces(mesh)) {
-    const Vec3& a = mesh.x[static_cast<std::size_t>(face.nodes[0])];
-    const Vec3& b = mesh.x[static_cast<std::size_t>(face.nodes[1])];
-    const Vec3& c = mesh.x[static_cast<std::size_t>(face.nodes[2])];
-    sum += 0.5 * (b - a).cross(c - a);
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  EXPECT_LT(sum.norm(), 1e-15);
-  EXPECT_NEAR(volume, 0.024, 1e-15);
-  int count = 0;
-  mesh::connected_components(mesh, count);
-  EXPECT_EQ(count, 1);
-}
-
-TEST(Locator, FindsTheTetOfEveryPlaceAndNoneOutside)
-{
-  const mesh::Mesh mesh = test::block({4, 3, 2, Vec3(0.4, 0.3, 0.2), 0.2});
-  const mesh::Locator locator(mesh);
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    const auto p = mesh::corners(mesh, t);
-    EXPECT_EQ(locator.tet_at(0.3 * p[0] + 0.3 * p[1] + 0.2 * p[2] + 0.2 * p[3]), t);
-  }
-  EXPECT_EQ(locator.tet_at(Vec3(0.41, 0.1, 0.1)), -1);
-  // On a vertex every tet around it would do; the lowest one is taken.
-  const auto around = mesh::node_to_tets(mesh);
-  for (int node = 0; node < mesh.node_count(); ++node)
-    EXPECT_EQ(locator.tet_at(mesh.x[static_cast<std::size_t>(node)]),
-              around.tet[static_cast<std::size_t>(around.start[static_cast<std::size_t>(node)])]);
-}
-
-TEST(Partition, IsBalancedAndEqualOnAllRanks)
-{
-  const base::Comm comm(MPI_COMM_WORLD);
-  const mesh::Mesh mesh = test::block({8, 6, 6});
-  const std::vector<int> owner = mesh::partition_nodes(mesh, comm);
-  std::vector<int> root = owner;
-  comm.broadcast(root);
-  EXPECT_EQ(owner, root);
-  for (int rank = 0; rank < comm.size(); ++rank)
-    EXPECT_LT(static_cast<double>(std::count(owner.begin(), owner.end(), rank)) * comm.size(),
-              1.3 * mesh.node_count());
-}
-
-TEST(Groups, UnknownNamesAreRefusedWithTheNearest)
-{
-  const mesh::Mesh mesh = test::block({});
-  for (const auto& look : {std::function([&] { mesh::surface_group(mesh, "x9"); }),
-                           std::function([&] { mesh::group_nodes(mesh, "zz"); })}) {
-    try {
-      look();
-      ADD_FAILURE();
-    } catch (const core::Failure& failure) {
-      EXPECT_EQ(failure.code(), core::ExitCode::data);
-      EXPECT_NE(std::string(failure.what()).find("did you mean"), std::string::npos);
-    }
-  }
 }
 
 }  // namespace

@@ -1,39 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "law/box_qp.hpp"
-#include "law/compare.hpp"
-#include "law/condensed.hpp"
-#include "law/gauss_seidel.hpp"
 #include "law/solve.hpp"
+#include "support/problem.hpp"
 
 namespace trocar::law {
 namespace {
 
-/// Random problem of `points` coupling points with two bilateral rows and a box row each; `rank`
-/// below 3 * points makes W singular.
-Problem random_problem(int points, int rank, unsigned seed)
-{
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal;
-  const auto random = [&](Eigen::Index rows, Eigen::Index columns) {
-    return MatX::NullaryExpr(rows, columns, [&] { return normal(generator); }).eval();
-  };
-  Problem problem;
-  const int rows = 3 * points;
-  const MatX B = random(rows, rank);
-  problem.W = 1e-3 * B * B.transpose() / rank;
-  // Gaps in the range of W: bilateral rows are then consistent even when W is singular.
-  problem.g = B * random(rank, 1) * 1e-3;
-  problem.bound = VecX::Constant(rows, 0.5);
-  problem.start = VecX::Zero(rows);
-  for (int i = 0; i < rows; ++i) {
-    problem.kind.push_back(i % 3 == 2 ? RowKind::box : RowKind::bilateral);
-    problem.group.push_back(i / 3);
-  }
-  return problem;
-}
+using test::random_problem;
 
 double energy(const Problem& p, const VecX& x)
 {
@@ -149,78 +122,6 @@ TEST(Solvers, StepNormStopsEarlierThanTheResidualAllows)
   EXPECT_LT(exact.residual, step.residual);
 }
 
-TEST(PivotedCholesky, FindsTheRankAndARegularSubset)
-{
-  const Problem problem = random_problem(10, 13, 7);
-  const PivotedCholesky factor(problem.W);
-  EXPECT_EQ(factor.rank(), 13);
-  const MatX part = problem.W(factor.kept(), factor.kept());
-  EXPECT_EQ(Eigen::LLT<MatX>(part).info(), Eigen::Success);
-  EXPECT_EQ(PivotedCholesky(MatX::Zero(4, 4)).rank(), 0);
-}
-
-TEST(BoxQp, WarmStartedActiveSetNeedsFewFactorisations)
-{
-  const Problem problem = random_problem(30, 120, 11);
-  Condensed condensed(problem);
-  const BoxSolution cold =
-      active_set(condensed.S(), condensed.s(), condensed.bound(), condensed.start(), 1000);
-  const BoxSolution warm =
-      active_set(condensed.S(), condensed.s(), condensed.bound(), cold.x, 1000);
-  EXPECT_TRUE(cold.finished);
-  EXPECT_LE(cold.factorisations, 15);
-  EXPECT_LE(warm.factorisations, 2);
-  EXPECT_LT((warm.x - cold.x).norm(), 1e-12);
-}
-
-TEST(PivotedCholesky, ManyPanelsSolveOnKeptRowsAndProjectOntoTheRange)
-{
-  const Problem problem = random_problem(40, 75, 2);
-  const PivotedCholesky factor(problem.W);
-  ASSERT_EQ(factor.rank(), 75);
-  const std::vector<int> kept = factor.kept();
-  const VecX x = VecX::LinSpaced(75, -1.0, 1.0);
-  EXPECT_LT((factor.solve(problem.W(kept, kept) * x) - x).norm(), 1e-6);
-  const VecX in_range = problem.W * VecX::Ones(120);
-  EXPECT_LT((factor.onto_range(in_range) - in_range).norm(), 1e-12 * in_range.norm());
-  const VecX any = VecX::LinSpaced(120, 0.0, 1.0);
-  EXPECT_LT((problem.W * (any - factor.onto_range(any))).norm(), 1e-12);
-}
-
-TEST(BoxQp, SetNewtonNeedsHardlyMoreThanOneFactorisationFromGoodSets)
-{
-  for (int rank : {120, 40}) {  // regular, and S singular
-    const Problem problem = random_problem(30, rank, 11);
-    Condensed condensed(problem);
-    const MatX& S = condensed.S();
-    const VecX &s = condensed.s(), &F = condensed.bound();
-    const BoxSolution cold = interior_point(S, s, F, condensed.start(), 1e-13, 100);
-    ASSERT_TRUE(cold.finished);
-    EXPECT_LE(cold.factorisations, 20);
-    const BoxSolution warm = set_newton(S, s, F, cold.x, 1e-9, 6);
-    EXPECT_TRUE(warm.finished);
-    EXPECT_LE(warm.factorisations, rank == 120 ? 1 : 2);
-    EXPECT_LT(box_residual(S, s, F, warm.x), 1e-12);
-  }
-}
-
-TEST(BoxQp, SetNewtonGivesUpInsteadOfCycling)
-{
-  // From the wrong bounds everywhere; whatever it does, few factorisations and no false success.
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const Problem problem = random_problem(30, 40, seed);
-    Condensed condensed(problem);
-    const VecX& F = condensed.bound();
-    const VecX wrong = condensed.s().cwiseSign().cwiseProduct(F);
-    const BoxSolution answer = set_newton(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
-    EXPECT_LE(answer.factorisations, 6);
-    if (answer.finished)
-      EXPECT_LT(box_residual(condensed.S(), condensed.s(), F, answer.x), 1e-9);
-    else
-      EXPECT_EQ(answer.x, wrong);
-  }
-}
-
 TEST(Solvers, WhereAllRowsSlipTheBoxesNeedNoFactorisation)
 {
   Problem problem = random_problem(10, 40, 4);
@@ -252,21 +153,6 @@ TEST(Solvers, SlippingRowsLieOnTheirBoundsWhateverTheMethod)
         }
     }
   }
-}
-
-TEST(Compare, AddsUpWhatEveryContenderNeeded)
-{
-  const Problem problem = random_problem(20, 62, 3);
-  const std::vector<Contender> contenders{
-      {"hybrid", {.method = Method::hybrid, .max_iterations = 5}}, {"auto", {}}};
-  std::vector<Trial> trials;
-  compare(problem, contenders, trials);
-  compare(problem, contenders, trials);
-  ASSERT_EQ(trials.size(), 2U);
-  EXPECT_EQ(trials[0].iterations, 10);
-  EXPECT_GT(trials[0].residual, trials[1].residual);
-  EXPECT_LE(trials[1].residual, 1e-9);
-  for (const Trial& trial : trials) EXPECT_GT(trial.factor_seconds, 0.0);
 }
 
 }  // namespace

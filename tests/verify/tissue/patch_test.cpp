@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "support/body.hpp"
 
 namespace trocar {
@@ -10,6 +7,7 @@ namespace {
 
 using core::Mat3;
 using core::Vec3;
+using test::nodal;
 
 tissue::TissueSettings all_faces_held(tissue::Model model)
 {
@@ -20,8 +18,6 @@ tissue::TissueSettings all_faces_held(tissue::Model model)
     settings.boundary.fixed.push_back({side, 7});
   return settings;
 }
-
-using test::nodal;
 
 const core::TimeStep at_rest{0.0, 1.0, true};
 
@@ -90,79 +86,6 @@ TEST(Traction, StretchesABarByItsModulus)
   EXPECT_LT(
       body.comm.max((body.tissue.finish(motion, {}, {}).value - exact.value).cwiseAbs().maxCoeff()),
       1e-13);
-}
-
-// Backward Euler of a body in free fall, and of one damped by αM alone, node for node.
-TEST(Dynamics, FreeFallAndRayleighDecayAreBackwardEulers)
-{
-  for (tissue::Mass mass : {tissue::Mass::consistent, tissue::Mass::lumped}) {
-    tissue::TissueSettings settings;
-    settings.mass = mass;
-    settings.materials = {{4000.0, 0.3, 1000.0, 3.0, 0.0}};
-    settings.boundary.gravity = Vec3(0, 0, -9.81);
-    test::Body body({2, 2, 2, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
-    tissue::TissueState state = body.tissue.at_rest();
-    const double h = 0.01;
-    double v = 0.0, z = 0.0;
-    for (int n = 1; n <= 5; ++n) {
-      const auto motion = body.tissue.free_motion(state, state.u, {n * h, h, false});
-      const fem::OwnedField u = body.tissue.finish(motion, {}, {});
-      state.v.value = (u.value - state.u.value) / h;
-      state.u = u;
-      v = (v - 9.81 * h) / (1.0 + 3.0 * h);
-      z += h * v;
-    }
-    for (int i = 0; i < body.space.owned(); ++i) {
-      EXPECT_NEAR(state.u.node(i).z(), z, 1e-11);
-      EXPECT_NEAR(state.u.node(i).x(), 0.0, 1e-11);
-    }
-  }
-}
-
-TEST(Dynamics, PrescribedMotionIsFollowedAndPushesItsNeighbours)
-{
-  tissue::TissueSettings settings;
-  settings.boundary.fixed = {{"z0", 7}};
-  settings.boundary.displacements = {{"z1", Vec3(0.004, std::nan(""), -0.002),
-                                      core::parse_csv("time,factor\n0,0\n1,1\n", "ramp.csv")}};
-  test::Body body({3, 3, 3, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
-  tissue::TissueState state = body.tissue.at_rest();
-  for (int n = 1; n <= 4; ++n) {
-    const auto motion = body.tissue.free_motion(state, state.u, {0.1 * n, 0.1, false});
-    const fem::OwnedField u = body.tissue.finish(motion, {}, {});
-    state.v.value = (u.value - state.u.value) / 0.1;
-    state.u = u;
-  }
-  const auto u = body.space.gather(state.u);
-  for (int node : mesh::group_nodes(body.mesh, "z1")) {
-    EXPECT_NEAR(u.node(node).x(), 0.0016, 1e-15);
-    EXPECT_NEAR(u.node(node).z(), -0.0008, 1e-15);
-  }
-  double largest = 0.0;
-  for (int node = 0; node < body.mesh.node_count(); ++node)
-    if (body.mesh.x[static_cast<std::size_t>(node)].z() < 0.05 + 1e-9)
-      largest = std::max(largest, u.node(node).norm());
-  EXPECT_GT(largest, 1e-4);
-}
-
-TEST(Supports, FloatingBodiesAreRefusedInStatics)
-{
-  const auto refused = [](std::vector<tissue::BoundaryConditions::Fixed> fixed) {
-    tissue::TissueSettings settings;
-    settings.boundary.fixed = std::move(fixed);
-    test::Body body({2, 2, 2}, settings);
-    try {
-      tissue::require_supports(body.tissue.fixed(), body.mesh);
-      return false;
-    } catch (const core::Failure& failure) {
-      return failure.code() == core::ExitCode::options;
-    }
-  };
-  EXPECT_TRUE(refused({}));
-  EXPECT_TRUE(refused({{"z0", 4}}));
-  EXPECT_TRUE(refused({{"z0", 4}, {"x0", 1}}));
-  EXPECT_FALSE(refused({{"z0", 4}, {"x0", 1}, {"y0", 2}}));
-  EXPECT_FALSE(refused({{"z0", 7}}));
 }
 
 }  // namespace

@@ -1,19 +1,13 @@
-#include "tissue/elements_of.hpp"
+#pragma once
 
 #include <algorithm>
 
 #include "tissue/element_blocks.hpp"
-#include "tissue/element_forces.hpp"
+#include "tissue/elements_of.hpp"
 
-// Geometry, rotations and operator of the tets; their forces are in element_forces.hpp.
+// Geometry, rotations and operator of the tets: definitions for linear_tets.cpp and
+// quadratic_tets.cpp alone.
 namespace trocar::tissue {
-
-std::unique_ptr<Elements> Elements::make(const mesh::Mesh& mesh, const fem::Space& space,
-                                         const ElementSettings& settings)
-{
-  if (mesh.quadratic()) return std::make_unique<ElementsOf<10>>(mesh, space, settings);
-  return std::make_unique<ElementsOf<4>>(mesh, space, settings);
-}
 
 template <int N>
 ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
@@ -44,8 +38,6 @@ ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
   cliques_ = patch_nodes(*patches_, space);
 }
 
-namespace {
-
 /// Σ over Gauss points of f(barycentric coordinates, part of the reference volume): exact to degree
 /// 7 (five Gauss-Legendre points in each of three collapsed coordinates).
 template <class F>
@@ -65,8 +57,6 @@ void integrate_tet(const F& f)
           weight);
       }
 }
-
-}  // namespace
 
 template <int N>
 void ElementsOf<N>::measure_curved_masses(const mesh::Mesh& mesh)
@@ -277,8 +267,5 @@ std::vector<Mat3> ElementsOf<N>::turns(const std::vector<Mat3>& R,
   }
   return sum;
 }
-
-template class ElementsOf<4>;
-template class ElementsOf<10>;
 
 }  // namespace trocar::tissue

@@ -1,0 +1,45 @@
+#include "core/dense.hpp"
+
+namespace trocar::core {
+namespace {
+
+template <class Columns>
+void solve_in_place(const MatX& L, Columns& b)
+{
+  L.triangularView<Eigen::Lower>().solveInPlace(b);
+  L.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
+}
+
+}  // namespace
+
+void Cholesky::compute(MatX A)
+{
+  L_ = std::move(A);
+  regular_ = cholesky_in_place(L_);
+}
+
+VecX Cholesky::solve(const VecX& b) const
+{
+  VecX x = b;
+  solve_in_place(L_, x);
+  return x;
+}
+
+MatX Cholesky::solve(const MatX& B) const
+{
+  MatX X = B;
+  solve_in_place(L_, X);
+  return X;
+}
+
+bool cholesky_in_place(MatX& A)
+{
+  return Eigen::LLT<Eigen::Ref<MatX>>(A).info() == Eigen::Success;
+}
+
+VecX solve_square(const MatX& A, const VecX& b)
+{
+  return A.partialPivLu().solve(b);
+}
+
+}  // namespace trocar::core

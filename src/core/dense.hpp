@@ -1,0 +1,54 @@
+#pragma once
+
+#include <utility>
+
+#include "core/math.hpp"
+
+// Dense factorisations of any size. They are compiled in dense*.cpp alone: each costs a
+// compiler several seconds, in every file that spells one out.
+namespace trocar::core {
+
+/// A = L Lᵀ of a symmetric positive definite matrix (its lower half is read).
+class Cholesky
+{
+ public:
+  Cholesky() = default;
+  explicit Cholesky(MatX A) { compute(std::move(A)); }
+
+  void compute(MatX A);
+  /// False when a pivot was not positive: then there is no solving.
+  bool regular() const { return regular_; }
+  /// A⁻¹ b; b and the result have the rows of A.
+  VecX solve(const VecX& b) const;
+  MatX solve(const MatX& B) const;
+
+ private:
+  MatX L_;  ///< in its lower half
+  bool regular_ = false;
+};
+
+/// A = L Lᵀ in the place of A's lower half; false when a pivot is not positive.
+bool cholesky_in_place(MatX& A);
+
+/// The x of least norm among those that minimise |A x - b|, for any A (complete orthogonal
+/// decomposition).
+VecX least_squares(const MatX& A, const VecX& b);
+
+/// A⁻¹ b of a regular square matrix (LU with partial pivoting).
+VecX solve_square(const MatX& A, const VecX& b);
+
+/// Eigenvalues of a symmetric matrix, rising, and their unit vectors by column.
+struct SymmetricEigen
+{
+  VecX values;
+  MatX vectors;
+};
+SymmetricEigen symmetric_eigen(const MatX& A);
+/// The values alone.
+VecX symmetric_eigenvalues(const MatX& A);
+Vec3 symmetric_eigenvalues(const Mat3& A);
+
+/// Orthogonal projection of x onto the range of L (n x r, of full rank r).
+VecX project_onto_range(const MatX& L, const VecX& x);
+
+}  // namespace trocar::core

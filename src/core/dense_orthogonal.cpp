@@ -1,0 +1,19 @@
+#include "core/dense.hpp"
+
+// The orthogonal factorisations, which take a compiler longest.
+namespace trocar::core {
+
+VecX least_squares(const MatX& A, const VecX& b)
+{
+  return A.completeOrthogonalDecomposition().solve(b);
+}
+
+VecX project_onto_range(const MatX& L, const VecX& x)
+{
+  const Eigen::HouseholderQR<MatX> qr(L);
+  VecX y = qr.householderQ().adjoint() * x;
+  y.tail(y.size() - L.cols()).setZero();
+  return qr.householderQ() * y;
+}
+
+}  // namespace trocar::core

@@ -1,0 +1,19 @@
+#include "tissue/elements.hpp"
+
+#include "tissue/elements_of.hpp"
+
+namespace trocar::tissue {
+
+std::unique_ptr<Elements> Elements::make(const mesh::Mesh& mesh, const fem::Space& space,
+                                         const ElementSettings& settings)
+{
+  if (mesh.quadratic()) return std::make_unique<ElementsOf<10>>(mesh, space, settings);
+  return std::make_unique<ElementsOf<4>>(mesh, space, settings);
+}
+
+bool Configuration::operator==(const Configuration& other) const
+{
+  return R == other.R && G == other.G && p == other.p;
+}
+
+}  // namespace trocar::tissue

@@ -1,0 +1,8 @@
+#include "tissue/element_forces.hpp"
+#include "tissue/element_operator.hpp"
+
+namespace trocar::tissue {
+
+template class ElementsOf<10>;
+
+}  // namespace trocar::tissue

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include "law/box_qp.hpp"
+#include "law/condensed.hpp"
+#include "support/problem.hpp"
+
+namespace trocar::law {
+namespace {
+
+using test::random_problem;
+
+TEST(BoxQp, WarmStartedActiveSetNeedsFewFactorisations)
+{
+  const Problem problem = random_problem(30, 120, 11);
+  Condensed condensed(problem);
+  const BoxSolution cold =
+      active_set(condensed.S(), condensed.s(), condensed.bound(), condensed.start(), 1000);
+  const BoxSolution warm =
+      active_set(condensed.S(), condensed.s(), condensed.bound(), cold.x, 1000);
+  EXPECT_TRUE(cold.finished);
+  EXPECT_LE(cold.factorisations, 15);
+  EXPECT_LE(warm.factorisations, 2);
+  EXPECT_LT((warm.x - cold.x).norm(), 1e-12);
+}
+
+TEST(BoxQp, SetNewtonNeedsHardlyMoreThanOneFactorisationFromGoodSets)
+{
+  for (int rank : {120, 40}) {  // regular, and S singular
+    const Problem problem = random_problem(30, rank, 11);
+    Condensed condensed(problem);
+    const MatX& S = condensed.S();
+    const VecX &s = condensed.s(), &F = condensed.bound();
+    const BoxSolution cold = interior_point(S, s, F, condensed.start(), 1e-13, 100);
+    ASSERT_TRUE(cold.finished);
+    EXPECT_LE(cold.factorisations, 20);
+    const BoxSolution warm = set_newton(S, s, F, cold.x, 1e-9, 6);
+    EXPECT_TRUE(warm.finished);
+    EXPECT_LE(warm.factorisations, rank == 120 ? 1 : 2);
+    EXPECT_LT(box_residual(S, s, F, warm.x), 1e-12);
+  }
+}
+
+TEST(BoxQp, SetNewtonGivesUpInsteadOfCycling)
+{
+  // From the wrong bounds everywhere; whatever it does, few factorisations and no false success.
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Problem problem = random_problem(30, 40, seed);
+    Condensed condensed(problem);
+    const VecX& F = condensed.bound();
+    const VecX wrong = condensed.s().cwiseSign().cwiseProduct(F);
+    const BoxSolution answer = set_newton(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
+    EXPECT_LE(answer.factorisations, 6);
+    if (answer.finished)
+      EXPECT_LT(box_residual(condensed.S(), condensed.s(), F, answer.x), 1e-9);
+    else
+      EXPECT_EQ(answer.x, wrong);
+  }
+}
+
+}  // namespace
+}  // namespace trocar::law

@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include "support/scene.hpp"
+
+namespace trocar {
+namespace {
+
+using core::Vec3;
+using test::distorted;
+using test::plain;
+
+// What the holder puts in is what the tissue feels. The tissue's side is taken from its own
+// unbalanced nodal forces, which only the rows can balance.
+TEST(Balance, ActionEqualsReaction)
+{
+  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+    driver::Scenario scenario = test::needle_scenario(distorted);
+    scenario.needles[0].model = model;
+    const base::Comm comm(MPI_COMM_WORLD);
+    driver::Simulation simulation(scenario, comm);
+    driver::State state = *simulation.initial_state().state;
+    double worst = 0.0, largest = 0.0;
+    for (int n = 1; n <= 60; ++n) {
+      const core::TimeStep now{0.02 * n, 0.02, false};
+      const driver::StepResult result = simulation.step(state, now);
+      ASSERT_TRUE(result.state) << result.why;
+      double scale = 0.0;
+      const fem::GlobalField unbalanced = simulation.space().gather(
+          simulation.tissue().residual(state.tissue, result.state->tissue.u, now, scale));
+      Vec3 on_tissue = Vec3::Zero();
+      for (int node = 0; node < scenario.mesh.node_count(); ++node)
+        on_tissue -= unbalanced.node(node);
+      worst = std::max(worst, (result.report.needles[0].base.force - on_tissue).norm());
+      largest = std::max(largest, on_tissue.norm());
+      state = *result.state;
+    }
+    EXPECT_GT(largest, 0.1);
+    EXPECT_LT(worst, 1e-10 * largest);
+  }
+}
+
+// The same in an iterated static state of a corotational body under its weight.
+TEST(Balance, ActionEqualsReactionInEquilibrium)
+{
+  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+    driver::Scenario scenario = test::needle_scenario(distorted);
+    scenario.needles[0].model = model;
+    scenario.time.analysis = driver::Analysis::equilibrium;
+    scenario.tissue.model = tissue::Model::corotational;
+    scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);
+    scenario.needles[0].motion.inserted = 0.03;
+    const base::Comm comm(MPI_COMM_WORLD);
+    driver::Simulation simulation(scenario, comm);
+    const driver::StepResult start = simulation.initial_state();
+    ASSERT_TRUE(start.state) << start.why;
+    double scale = 0.0;
+    const fem::GlobalField unbalanced = simulation.space().gather(simulation.tissue().residual(
+        simulation.tissue().at_rest(), start.state->tissue.u, {0, 1, true}, scale));
+    Vec3 on_tissue = Vec3::Zero();
+    for (int node = 0; node < scenario.mesh.node_count(); ++node)
+      on_tissue -= unbalanced.node(node);
+    const Vec3 needle = start.report.needles[0].base.force;
+    EXPECT_GT(needle.norm(), 1e-3);
+    EXPECT_LT((on_tissue - needle).norm(), 1e-6 * needle.norm());
+  }
+}
+
+// A needle row whose nodes are all prescribed has no force; its gap stays and statics converge.
+TEST(Balance, RowsOnPrescribedNodesAreLeftAlone)
+{
+  driver::Scenario scenario = test::needle_scenario(plain);
+  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.tissue.boundary.fixed = {{"z0", 7}, {"x0", 7}};
+  scenario.needles[0].motion.entry = Vec3(0, 0.02, 0.02);
+  scenario.needles[0].motion.inserted = 0.03;
+  scenario.needles[0].motion.trajectory =
+      core::parse_csv("time,x,y,z\n0,-0.05,0.02,0.02\n1,-0.05,0.021,0.02\n", "aside.csv");
+  scenario.time.end = 0.04;
+  const test::Run run = test::run(scenario);
+  EXPECT_LT(run.reports.back().rank, run.reports.back().rows);
+  EXPECT_GT(run.reports.back().needles[0].base.force.norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace trocar

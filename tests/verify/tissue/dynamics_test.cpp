@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/body.hpp"
+
+namespace trocar {
+namespace {
+
+using core::Vec3;
+
+// Backward Euler of a body in free fall, and of one damped by αM alone, node for node.
+TEST(Dynamics, FreeFallAndRayleighDecayAreBackwardEulers)
+{
+  for (tissue::Mass mass : {tissue::Mass::consistent, tissue::Mass::lumped}) {
+    tissue::TissueSettings settings;
+    settings.mass = mass;
+    settings.materials = {{4000.0, 0.3, 1000.0, 3.0, 0.0}};
+    settings.boundary.gravity = Vec3(0, 0, -9.81);
+    test::Body body({2, 2, 2, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
+    tissue::TissueState state = body.tissue.at_rest();
+    const double h = 0.01;
+    double v = 0.0, z = 0.0;
+    for (int n = 1; n <= 5; ++n) {
+      const auto motion = body.tissue.free_motion(state, state.u, {n * h, h, false});
+      const fem::OwnedField u = body.tissue.finish(motion, {}, {});
+      state.v.value = (u.value - state.u.value) / h;
+      state.u = u;
+      v = (v - 9.81 * h) / (1.0 + 3.0 * h);
+      z += h * v;
+    }
+    for (int i = 0; i < body.space.owned(); ++i) {
+      EXPECT_NEAR(state.u.node(i).z(), z, 1e-11);
+      EXPECT_NEAR(state.u.node(i).x(), 0.0, 1e-11);
+    }
+  }
+}
+
+TEST(Dynamics, PrescribedMotionIsFollowedAndPushesItsNeighbours)
+{
+  tissue::TissueSettings settings;
+  settings.boundary.fixed = {{"z0", 7}};
+  settings.boundary.displacements = {{"z1", Vec3(0.004, std::nan(""), -0.002),
+                                      core::parse_csv("time,factor\n0,0\n1,1\n", "ramp.csv")}};
+  test::Body body({3, 3, 3, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
+  tissue::TissueState state = body.tissue.at_rest();
+  for (int n = 1; n <= 4; ++n) {
+    const auto motion = body.tissue.free_motion(state, state.u, {0.1 * n, 0.1, false});
+    const fem::OwnedField u = body.tissue.finish(motion, {}, {});
+    state.v.value = (u.value - state.u.value) / 0.1;
+    state.u = u;
+  }
+  const auto u = body.space.gather(state.u);
+  for (int node : mesh::group_nodes(body.mesh, "z1")) {
+    EXPECT_NEAR(u.node(node).x(), 0.0016, 1e-15);
+    EXPECT_NEAR(u.node(node).z(), -0.0008, 1e-15);
+  }
+  double largest = 0.0;
+  for (int node = 0; node < body.mesh.node_count(); ++node)
+    if (body.mesh.x[static_cast<std::size_t>(node)].z() < 0.05 + 1e-9)
+      largest = std::max(largest, u.node(node).norm());
+  EXPECT_GT(largest, 1e-4);
+}
+
+}  // namespace
+}  // namespace trocar
