@@ -87,7 +87,9 @@ def refusal(scene):
     def refuses(what, code, words, changes, remove=(), ranks=(2,)):
         settings = {key: value for key, value in {**scene, **changes}.items() if key not in remove}
         for n in ranks:
-            process = pool.submit(run, settings, n, environment=dict(os.environ))
+            if "-output_dir" not in changes and "-output_dir" not in remove:
+                settings["-output_dir"] = os.path.join(FOLDER, f"refused_{len(refusals)}")
+            process = pool.submit(run, dict(settings), n, environment=dict(os.environ))
             refusals.append((f"{what} on {n} ranks", code, words, process))
     return refuses
 
