@@ -1,6 +1,19 @@
 #pragma once
 
+#include <compare>
+
 namespace trocar::core {
+
+/// How velocity and acceleration follow from the displacement at the end of a step,
+///   v = velocity (u - û),  a = acceleration (v - v̂)   [1/s],
+/// with the past û, v̂ of the time scheme. Both are 0 where there is no inertia. An operator belongs
+/// to one pair of them.
+struct Rates
+{
+  double velocity = 0.0, acceleration = 0.0;
+
+  auto operator<=>(const Rates&) const = default;
+};
 
 /// One implicit step, or one static equilibrium.
 struct TimeStep
@@ -9,9 +22,14 @@ struct TimeStep
   double h = 0.0;  ///< length [s]
   bool is_static = false;
   double load = 1.0;  ///< share of gravity, traction and prescribed displacement (load steps)
-  double lead = 1.0;  ///< of u in h u' = lead (u - û): 1 backward Euler, 3/2 BDF2 (û: the past)
+  double lead = 1.0;  ///< of u in h v = lead (u - û): 1 backward Euler, 3/2 BDF2 (û: the past)
+  double interval = 0.0;  ///< h̄ in a = (v - v̂)/h̄ [s]; 0: h
 
-  double inverse() const { return is_static ? 0.0 : lead / h; }  ///< [1/s], 0 without inertia
+  Rates rates() const
+  {
+    if (is_static) return {};
+    return {lead / h, 1.0 / (interval > 0.0 ? interval : h)};
+  }
 };
 
 }  // namespace trocar::core

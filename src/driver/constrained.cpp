@@ -194,7 +194,7 @@ void Simulation::correct(const State& past, const core::TimeStep& now,
                          State& next, StepReport& report)
 {
   const bool pushed = pass.lambda.lambda.size() > 0;
-  next.tissue.v.value = now.inverse() * (next.tissue.u.value - past.tissue.u.value);
+  next.tissue.v.value = now.rates().velocity * (next.tissue.u.value - past.tissue.u.value);
   report.needles.assign(needles_.size(), {});
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(needles_[i].dofs()).eval();

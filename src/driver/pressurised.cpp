@@ -38,7 +38,7 @@ const cavity::PressureAnswers& Simulation::unit_answers(const cavity::State& sta
 {
   constexpr std::size_t most_kept = 2;
   const std::vector<int> which = cavities_->frozen(state);
-  const auto known = unit_answers_.find(now.inverse());
+  const auto known = unit_answers_.find(now.rates());
   // Pressures that are given at the start only join later.
   if (known != unit_answers_.end() && known->second.per_p.size() == which.size())
     return known->second;
@@ -51,7 +51,7 @@ const cavity::PressureAnswers& Simulation::unit_answers(const cavity::State& sta
     if (cavities_->proportional() && gain == 0.0)
       gain = cavities_->line_gain(which[k], answers.per_p.back());
   }
-  return unit_answers_[now.inverse()] = std::move(answers);
+  return unit_answers_[now.rates()] = std::move(answers);
 }
 
 /// The same when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.

@@ -36,16 +36,13 @@ class Clock
   State run(State state)
   {
     const TimeSettings& time = simulation_.scenario().time;
-    const auto steps = static_cast<long>(std::ceil(time.end / time.step - 1e-6));
+    const long steps = step_count(time);
     for (long n = 1; n <= steps; ++n) {
-      // Bit-equal h for all steps but a shorter last one: linear tissue then factors once.
-      const double left = time.end - static_cast<double>(n - 1) * time.step;
-      const bool shorter = n == steps && left < time.step * (1.0 - 1e-6);
-      const double h = shorter ? left : time.step;
-      const double t = shorter ? time.end : static_cast<double>(n) * time.step;
+      const double t = static_cast<double>(n) * time.step;
       const bool output =
           n == steps || n % static_cast<long>(simulation_.scenario().output.every) == 0;
-      state = advance(std::move(state), {t, h, time.analysis == Analysis::equilibrium}, 0, output);
+      state = advance(std::move(state), {t, time.step, time.analysis == Analysis::equilibrium}, 0,
+                      output);
     }
     return state;
   }

@@ -20,6 +20,16 @@ namespace {
 using core::Options;
 using core::Vec3;
 
+/// Of equal steps to the end: h itself when it goes into T whole, to a millionth of it, else the
+/// longest that is not above it.
+double equal_steps(double h, double T)
+{
+  constexpr double whole = 1e-6;
+  const double ratio = T / h, nearest = std::round(ratio);
+  if (T == 0.0 || (nearest >= 1.0 && std::abs(ratio - nearest) <= whole)) return h;
+  return T / std::ceil(ratio);
+}
+
 TimeSettings read_time(Options& options)
 {
   TimeSettings time;
@@ -27,8 +37,9 @@ TimeSettings read_time(Options& options)
                                                  {"static", Analysis::equilibrium},
                                                  {"pv_curve", Analysis::pv_curve}};
   time.analysis = analyses.at(options.text("analysis"));
-  time.step = options.real("time_step");
+  time.asked = options.real("time_step");
   time.end = options.real("time_end");
+  time.step = equal_steps(time.asked, time.end);
   time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
   time.second_order = options.text("time_scheme") == "bdf2";
   time.newton_max = options.integer("time_newton_max");
@@ -240,6 +251,11 @@ void add_radius_correction(Scenario& scenario)
 }
 
 }  // namespace
+
+long step_count(const TimeSettings& time)
+{
+  return std::lround(time.end / time.step);
+}
 
 Scenario read_scenario(Options& options, const base::Comm& comm)
 {

@@ -20,13 +20,17 @@ enum class Analysis { dynamic, equilibrium, pv_curve };
 struct TimeSettings
 {
   Analysis analysis = Analysis::dynamic;
-  double step = 0.01;  ///< h [s]
-  double end = 0.0;    ///< T [s]
+  double step = 0.01;   ///< h [s]: T over a whole number
+  double end = 0.0;     ///< T [s]
+  double asked = 0.01;  ///< h as it was asked for [s]
   bool start_in_equilibrium = false;
   bool second_order = false;  ///< BDF2 instead of backward Euler
   int newton_max = 1;         ///< linearisations per dynamic step
   int direction_max = 1;      ///< updates of the constraint directions per linearisation
 };
+
+/// Number of steps to the end.
+long step_count(const TimeSettings& time);
 
 /// A P-V curve: equilibria with a cavity held at volumes between two parts of that of the mesh.
 struct PvSettings

@@ -1,5 +1,7 @@
 #include "driver/scenario_checks.hpp"
 
+#include "core/words.hpp"
+
 namespace trocar::driver {
 namespace {
 
@@ -34,6 +36,12 @@ void refuse_idle(const Scenario& scenario)
 
 void add_warnings(Scenario& scenario)
 {
+  const TimeSettings& time = scenario.time;
+  if (time.step != time.asked)
+    scenario.warnings.push_back("-time_end " + core::shown(time.end) +
+                                " is not a whole number of -time_step " + core::shown(time.asked) +
+                                ": " + std::to_string(step_count(time)) + " equal steps of " +
+                                core::shown(time.step) + " s are taken");
   for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
     if (scenario.tissue.materials[i].poisson > 0.45 && !scenario.mesh.quadratic() &&
         scenario.tissue.dilatation == tissue::Dilatation::pointwise)

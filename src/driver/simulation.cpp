@@ -26,7 +26,11 @@ Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
     tissue::require_supports(tissue_.fixed(), scenario.mesh);
   if (!scenario.cavities.cavities.empty())
     cavities_.emplace(scenario.mesh, space_, scenario.cavities, ledger_);
-  for (const needle::NeedleSettings& settings : scenario.needles) needles_.emplace_back(settings);
+  driven_at_start_ = !scenario.tissue.boundary.displacements.empty() || cavities_.has_value();
+  for (const needle::NeedleSettings& settings : scenario.needles) {
+    needles_.emplace_back(settings);
+    driven_at_start_ = driven_at_start_ || settings.motion.inserted > 0.0;
+  }
   if (needles_.empty()) return;
   locator_.emplace(scenario.mesh);
   insertion_.emplace(scenario.mesh, *locator_, scenario.insertion);
@@ -36,7 +40,10 @@ void Simulation::prepare()
 {
   const bool is_static =
       scenario_.time.analysis != Analysis::dynamic || scenario_.time.start_in_equilibrium;
-  tissue_.prepare({0.0, scenario_.time.step, is_static});
+  core::TimeStep first{0.0, scenario_.time.step, is_static};
+  State start, unused;
+  past_of(start, first, unused, start.velocity);
+  tissue_.prepare(first);
 }
 
 StepResult Simulation::initial_state()
@@ -86,9 +93,11 @@ StepResult Simulation::step(const State& old, const core::TimeStep& step)
 {
   core::TimeStep now = step;
   State extrapolated;
-  const State& past = past_of(old, now, extrapolated);  // what time derivatives count from
   State next = old;
   next.t = now.t;
+  next.h = now.is_static ? 0.0 : now.h;
+  // What time derivatives count from.
+  const State& past = past_of(old, now, extrapolated, next.velocity);
   // 1 events, decided before and frozen during the solve
   if (const auto trouble = move_needles(old, next)) return StepResult::rejected(*trouble);
   if (cavities_ && now.t > 0.0) advance_cavities(old, next);
@@ -266,7 +275,7 @@ void Simulation::accept(const State& old, const State& past, const core::TimeSte
     needle.depth = insertion_->depth(next.insertions[i]);
   }
   if (scenario_.time.second_order && now.t > 0.0)
-    next.before = Before{now.h, old.tissue, old.needles};
+    next.before = Before{velocity_of(old, now.h), old.tissue, old.needles};
   if (scenario_.output.energy) account(old, past, now, pass, walls, report, next);
 }
 

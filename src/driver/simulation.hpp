@@ -32,10 +32,17 @@ struct EnergyAccount
   }
 };
 
+/// Velocity as it was differenced from displacements: v = u'(t) - lag u'' + curvature u''' + O(h³).
+struct Differenced
+{
+  double lag = 0.0;        ///< [s]
+  double curvature = 0.0;  ///< [s²]
+};
+
 /// What BDF2 remembers of the step before.
 struct Before
 {
-  double h = 0.0;  ///< length of the step that led away from it [s]
+  Differenced velocity;
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
 };
@@ -43,7 +50,9 @@ struct Before
 /// All that changes in a run. A value: a rejected step leaves no trace.
 struct State
 {
-  double t = 0.0;  ///< [s]
+  double t = 0.0;        ///< [s]
+  double h = 0.0;        ///< length of the step that led here [s]; 0: none in time did
+  Differenced velocity;  ///< exact where none did
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
@@ -165,7 +174,9 @@ class Simulation
     int turnovers = 0;  ///< increments in a row that turned elements inside out
   };
 
-  const State& past_of(const State& old, core::TimeStep& now, State& extrapolated) const;
+  Differenced velocity_of(const State& state, double h) const;
+  const State& past_of(const State& old, core::TimeStep& now, State& extrapolated,
+                       Differenced& velocity) const;
   Pass linearised_step(const State& past, const core::TimeStep& now, double residual,
                        cavity::Shape& walls, State& next, core::VecX& last, StepReport& report);
   Pass constrained_step(const State& past, const core::TimeStep& now,
@@ -218,10 +229,11 @@ class Simulation
   fem::Space space_;
   tissue::Tissue tissue_;
   std::vector<needle::Needle> needles_;
-  std::optional<mesh::Locator> locator_;                    ///< only with needles
-  std::optional<insertion::Insertion> insertion_;           ///< only with needles
-  std::optional<cavity::Cavities> cavities_;                ///< only with cavities
-  std::map<double, cavity::PressureAnswers> unit_answers_;  ///< frozen cavities, by 1/h
+  bool driven_at_start_ = false;  ///< motion that rows or supports prescribe from the start on
+  std::optional<mesh::Locator> locator_;                         ///< only with needles
+  std::optional<insertion::Insertion> insertion_;                ///< only with needles
+  std::optional<cavity::Cavities> cavities_;                     ///< only with cavities
+  std::map<core::Rates, cavity::PressureAnswers> unit_answers_;  ///< frozen cavities, by operator
 };
 
 }  // namespace trocar::driver

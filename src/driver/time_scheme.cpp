@@ -3,42 +3,99 @@
 namespace trocar::driver {
 namespace {
 
+/// What a velocity at τ from the end of the step stands for there; see past_of.
+struct Moments
+{
+  double m, q;  ///< [s], [s²]
+
+  Moments operator-(const Moments& other) const { return {m - other.m, q - other.q}; }
+};
+
+/// (u - u_n)/h.
+Differenced differenced_once(double h)
+{
+  return {0.5 * h, h * h / 6.0};
+}
+
+Moments moments(const Differenced& v, double tau)
+{
+  return {tau - v.lag, 0.5 * tau * tau - v.lag * tau + v.curvature};
+}
+
+/// û = u_n + u (u_n - u_before), and v̂ likewise.
+struct Past
+{
+  double u, v;
+};
+
 void extrapolate(double c, const Vec3& before, Vec3& value)
 {
   value += c * (value - before);
 }
 
-void extrapolate(double c, const needle::NeedleState& before, needle::NeedleState& needle)
+void extrapolate(const Past& past, const needle::NeedleState& before, needle::NeedleState& needle)
 {
   for (std::size_t i = 0; i < needle.v.size(); ++i) {
-    extrapolate(c, before.shaft.x[i], needle.shaft.x[i]);
+    extrapolate(past.u, before.shaft.x[i], needle.shaft.x[i]);
     const core::Mat3 turn = needle.shaft.R[i] * before.shaft.R[i].transpose();
-    needle.shaft.R[i] = core::rotation_exp(c * core::rotation_log(turn)) * needle.shaft.R[i];
-    extrapolate(c, before.v[i], needle.v[i]);
-    extrapolate(c, before.w[i], needle.w[i]);
+    needle.shaft.R[i] = core::rotation_exp(past.u * core::rotation_log(turn)) * needle.shaft.R[i];
+    extrapolate(past.v, before.v[i], needle.v[i]);
+    extrapolate(past.v, before.w[i], needle.w[i]);
   }
 }
 
 }  // namespace
 
-// BDF2 with a varying step is backward Euler from an extrapolated past: with r = h/h_before,
-//   h u' = lead (u - û),  lead = (1 + 2r)/(1 + r),  û = u_n + r²/(1 + 2r) (u_n - u_before),
-// and the same for v' (Hairer, Norsett and Wanner 1993, III.5). The first step is backward Euler's,
-// and one that is much longer than that before.
-const State& Simulation::past_of(const State& old, core::TimeStep& now, State& extrapolated) const
+/// How the velocity of a state, from which a step of length h begins, was differenced. At a start
+/// it is exact. Where nothing is driven no force shows that, and the first step may have the
+/// operator of all others: the start then counts as one more step of the same length.
+Differenced Simulation::velocity_of(const State& state, double h) const
 {
-  if (now.is_static || !old.before) return old;
-  const double r = now.h / old.before->h;
-  constexpr double longest = 2.0;  // BDF2 is stable up to 1 + √2
-  if (r > longest) return old;
+  if (state.h > 0.0) return state.velocity;
+  return driven_at_start_ ? Differenced{} : differenced_once(h);
+}
+
+// Velocities of positions that rows prescribe are exact differences, whose error changes with the
+// length of the step; differenced again for the acceleration it would be divided by that length:
+// forces of driven masses, of fluids and of stuck needles would be off by a part that does not
+// vanish (the constrained motion is of index 3). So it is counted in. A velocity v_i at τ_i ≤ 0
+// from the end of the step stands for  u' + m_i u'' + q_i u'''  there, with m = τ - lag and q =
+// τ²/2 - lag τ + curvature, and  a = Σ c_i v_i  has  Σ c_i = 0,  Σ c_i m_i = 1  and, with three of
+// them, Σ c_i q_i = 0. With equal steps these are the classical formulas.
+//
+// Backward Euler, v = (u - u_n)/h: lag h/2, so that a = (v - v_n)/h̄ with h̄ the mean of both steps'
+// lengths, and half the step from a start where v_n is exact.
+//
+// BDF2 (Hairer, Norsett and Wanner 1993, III.5): with r = h/h_before
+//   h v = lead (u - û),  lead = (1 + 2r)/(1 + r),  û = u_n + r²/(1 + 2r) (u_n - u_before),
+// no lag, curvature -h (h + h_before)/6. Its first step is backward Euler's, and one whose length
+// is out of proportion to that before.
+const State& Simulation::past_of(const State& old, core::TimeStep& now, State& extrapolated,
+                                 Differenced& velocity) const
+{
+  velocity = {};
+  if (now.is_static) return old;
+  constexpr double longest = 2.0 + 1e-6, shortest = 0.2 - 1e-6;  // stable up to 1 + √2
+  const double h = now.h, r = old.h > 0.0 ? h / old.h : 0.0;
+  velocity = differenced_once(h);
+  now.interval = h - velocity.lag + velocity_of(old, h).lag;
+  if (!old.before || r > longest || r < shortest) return old;
+
   now.lead = (1.0 + 2.0 * r) / (1.0 + r);
-  const double c = r * r / (1.0 + 2.0 * r);
+  velocity = {0.0, -h * (h + old.h) / 6.0};
+  const Moments end = moments(velocity, 0.0);
+  const Moments one = moments(old.velocity, -h) - end;
+  const Moments two = moments(old.before->velocity, -h - old.h) - end;
+  const double determinant = one.m * two.q - two.m * one.q;
+  const double c_one = two.q / determinant, c_two = -one.q / determinant;
+  now.interval = -1.0 / (c_one + c_two);
+  const Past past{r * r / (1.0 + 2.0 * r), now.interval * c_two};
   extrapolated.tissue = old.tissue;
-  extrapolated.tissue.u.value += c * (old.tissue.u.value - old.before->tissue.u.value);
-  extrapolated.tissue.v.value += c * (old.tissue.v.value - old.before->tissue.v.value);
+  extrapolated.tissue.u.value += past.u * (old.tissue.u.value - old.before->tissue.u.value);
+  extrapolated.tissue.v.value += past.v * (old.tissue.v.value - old.before->tissue.v.value);
   extrapolated.needles = old.needles;
   for (std::size_t i = 0; i < needles_.size(); ++i)
-    extrapolate(c, old.before->needles[i], extrapolated.needles[i]);
+    extrapolate(past, old.before->needles[i], extrapolated.needles[i]);
   return extrapolated;
 }
 

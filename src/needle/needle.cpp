@@ -79,18 +79,19 @@ Linearised Needle::linearise(const NeedleState& old, const NeedleState& iterate,
   const Shaft& shaft = iterate.shaft;
   linear.A = MatX::Zero(dofs(), dofs());
   linear.r = VecX::Zero(dofs());
-  const double inverse_h = step.inverse();
+  const core::Rates rate = step.rates();
   for (int i = 0; i <= settings_.elements; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const double mass = nodal_mass(i);
     const Mat3 J = rotary_inertia(i, shaft.R[n]);
-    const Vec3 v = inverse_h * (shaft.x[n] - old.shaft.x[n]);
-    const Vec3 w = inverse_h * core::rotation_log(shaft.R[n] * old.shaft.R[n].transpose());
+    const Vec3 v = rate.velocity * (shaft.x[n] - old.shaft.x[n]);
+    const Vec3 w = rate.velocity * core::rotation_log(shaft.R[n] * old.shaft.R[n].transpose());
     linear.r.segment<3>(6 * i) =
-        step.load * mass * settings_.gravity - mass * inverse_h * (v - old.v[n]);
-    linear.r.segment<3>(6 * i + 3) = -inverse_h * J * (w - old.w[n]);
-    linear.A.block<3, 3>(6 * i, 6 * i).diagonal().array() += mass * inverse_h * inverse_h;
-    linear.A.block<3, 3>(6 * i + 3, 6 * i + 3) += inverse_h * inverse_h * J;
+        step.load * mass * settings_.gravity - mass * rate.acceleration * (v - old.v[n]);
+    linear.r.segment<3>(6 * i + 3) = -rate.acceleration * J * (w - old.w[n]);
+    linear.A.block<3, 3>(6 * i, 6 * i).diagonal().array() +=
+        mass * rate.acceleration * rate.velocity;
+    linear.A.block<3, 3>(6 * i + 3, 6 * i + 3) += rate.acceleration * rate.velocity * J;
   }
   if (settings_.model == Model::rigid) {
     linear.held = dofs();
@@ -129,8 +130,9 @@ NeedleState Needle::correct(const NeedleState& old, const NeedleState& iterate,
     const auto n = static_cast<std::size_t>(i);
     next.shaft.x[n] += d.segment<3>(6 * i);
     next.shaft.R[n] = core::rotation_exp(d.segment<3>(6 * i + 3)) * next.shaft.R[n];
-    next.v[n] = step.inverse() * (next.shaft.x[n] - old.shaft.x[n]);
-    next.w[n] = step.inverse() * core::rotation_log(next.shaft.R[n] * old.shaft.R[n].transpose());
+    next.v[n] = step.rates().velocity * (next.shaft.x[n] - old.shaft.x[n]);
+    next.w[n] =
+        step.rates().velocity * core::rotation_log(next.shaft.R[n] * old.shaft.R[n].transpose());
   }
   return next;
 }

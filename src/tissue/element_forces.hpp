@@ -172,7 +172,7 @@ void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const Co
 }
 
 template <int N>
-OwnedField ElementsOf<N>::operate(const Configuration& at, double inverse_h,
+OwnedField ElementsOf<N>::operate(const Configuration& at, const core::Rates& rate,
                                   const GhostedField& d) const
 {
   core::VecX p;  // what the averages add to the operator at the points
@@ -181,8 +181,8 @@ OwnedField ElementsOf<N>::operate(const Configuration& at, double inverse_h,
   OwnedField product = space_->zero();
   for (std::size_t e = 0; e < tets(); ++e) {
     const Material& m = material(e);
-    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
-    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h * m.density;
+    const double scale_k = 1.0 + m.rayleigh_stiffness * rate.velocity;
+    const double scale_m = (rate.acceleration + m.rayleigh_mass) * rate.velocity * m.density;
     const Nodal w = nodal(d, e);
     Nodal force = scale_m * mass_factor(e) * w * mass_form(e);
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {

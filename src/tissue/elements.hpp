@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/time_step.hpp"
 #include "fem/block_matrix.hpp"
 #include "tissue/material.hpp"
 
@@ -107,11 +108,12 @@ class Elements
   virtual void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                              Configuration& at) const = 0;
 
-  /// Adds scale_k K + scale_m M, scale_k = 1 + β/h, scale_m = (1/h + α)/h [N/m].
-  virtual void assemble(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
-                        fem::BlockMatrix& values) const = 0;
+  /// Adds scale_k K + scale_m M, scale_k = 1 + β r_v, scale_m = (r_a + α) r_v with the rates r_v,
+  /// r_a of velocity and acceleration [N/m].
+  virtual void assemble(const Configuration& at, const core::Rates& rate,
+                        const fem::BlockPattern& pattern, fem::BlockMatrix& values) const = 0;
   /// The same operator times d [N], without its matrix and its supports.
-  virtual OwnedField operate(const Configuration& at, double inverse_h,
+  virtual OwnedField operate(const Configuration& at, const core::Rates& rate,
                              const GhostedField& d) const = 0;
 
   /// Adds the forces of stress, stiffness damping, and inertia with mass damping [N].

@@ -24,9 +24,9 @@ class ElementsOf final : public Elements
   core::VecX led_pressures(const Configuration& last, const GhostedField& d) const override;
   void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                      Configuration& at) const override;
-  void assemble(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
+  void assemble(const Configuration& at, const core::Rates& rate, const fem::BlockPattern& pattern,
                 fem::BlockMatrix& values) const override;
-  OwnedField operate(const Configuration& at, double inverse_h,
+  OwnedField operate(const Configuration& at, const core::Rates& rate,
                      const GhostedField& d) const override;
   void add_forces(const Configuration& at, const Kinematics& motion, OwnedField& internal,
                   OwnedField& inertia) const override;
@@ -94,8 +94,8 @@ class ElementsOf final : public Elements
   core::VecX pressures(const Configuration& at, const Kinematics& motion) const;
   void add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
                       const core::VecX& p, OwnedField& internal, OwnedField& inertia) const;
-  void add_patches(const Configuration& at, double inverse_h, const fem::BlockPattern& pattern,
-                   fem::BlockMatrix& values) const;
+  void add_patches(const Configuration& at, const core::Rates& rate,
+                   const fem::BlockPattern& pattern, fem::BlockMatrix& values) const;
   Mat3 increment(const Configuration& at, std::size_t e, std::size_t point, const Mat3& D) const;
 
   const fem::Space* space_;
@@ -108,5 +108,23 @@ class ElementsOf final : public Elements
   fem::Cliques cliques_;
   std::optional<Patches> patches_;  ///< only with nodal dilatation
 };
+
+/// ∂P/∂F : D at a point, without what a shared dilatation adds [Pa].
+template <int N>
+Mat3 ElementsOf<N>::increment(const Configuration& at, std::size_t e, std::size_t point,
+                              const Mat3& D) const
+{
+  const Material& m = material(e);
+  const Mat3& R = at.R[point];
+  const Mat3 G = exact() ? at.G[point] : Mat3::Zero();
+  Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
+  if (exact())
+    P += at.p[static_cast<Eigen::Index>(point)] *
+         energy::dilatation_increment(settings_.model, settings_.tangent, R, G, D);
+  const double lambda = lambda_at_point(m);
+  if (lambda == 0.0) return P;
+  const Mat3 by = dilatation_gradient(at, point);
+  return P + lambda * by.cwiseProduct(D).sum() * by;
+}
 
 }  // namespace trocar::tissue

@@ -1,5 +1,5 @@
 #include "tissue/element_forces.hpp"
-#include "tissue/element_operator.hpp"
+#include "tissue/element_geometry.hpp"
 
 namespace trocar::tissue {
 

@@ -26,10 +26,10 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
   if (!settings_.boundary.displacements.empty()) find_tools();
 }
 
-void Tissue::assemble(const Configuration& at, double inverse_h)
+void Tissue::assemble(const Configuration& at, const core::Rates& rate)
 {
   values_.set_zero();
-  elements_->assemble(at, inverse_h, pattern_, values_);
+  elements_->assemble(at, rate, pattern_, values_);
   values_.fix(*space_, fixed_);
   ++ledger_->assemblies;
 }
@@ -56,14 +56,14 @@ void Tissue::analyse()
 
 void Tissue::use_operator(const Configuration& at, const TimeStep& step)
 {
-  const double inverse_h = step.inverse();
+  const core::Rates rate = step.rates();
   const bool linear = settings_.model == Model::linear;
   const auto known = std::find_if(operators_.begin(), operators_.end(), [&](const Operator& o) {
-    return !linear || o.inverse_h == inverse_h || o.inverse_h < 0.0;
+    return !linear || o.rate == rate || !o.rate;
   });
   if (known != operators_.end()) {
     current_ = &*known;
-    const bool same = current_->inverse_h == inverse_h && (linear || current_->at == at);
+    const bool same = current_->rate == rate && (linear || current_->at == at);
     if (space_->comm().all(same)) {
       ++current_->uses;
       if (!current_->older) current_->sweeps += current_->last_sweeps = 1.0;
@@ -78,13 +78,13 @@ void Tissue::use_operator(const Configuration& at, const TimeStep& step)
       std::rotate(operators_.begin(), operators_.begin() + 1, operators_.end());
     current_ = &operators_.back();
   }
-  const bool same_h = current_->inverse_h == inverse_h;
-  current_->inverse_h = inverse_h;
+  const bool same_rates = current_->rate == rate;
+  current_->rate = rate;
   if (!linear) current_->at = at;
-  assemble(at, inverse_h);
+  assemble(at, rate);
   const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && current_->uses > 0 &&
                        current_->solver->can_turn();
-  if (may_lag && space_->comm().all(same_h) && !factor_worn()) {
+  if (may_lag && space_->comm().all(same_rates) && !factor_worn()) {
     current_->solver->turn(turned_nodes(at.R, current_->R_factor));
     current_->older = true;
     ++current_->uses;
@@ -115,7 +115,7 @@ std::optional<std::string> Tissue::why_not(const std::function<void()>& make_ope
   } catch (const core::Failure& failure) {
     if (!settings_.exact_tangent() || failure.code() != core::ExitCode::solver) throw;
     current_->older = false;
-    current_->inverse_h = -1.0;
+    current_->rate.reset();
     current_->uses = 0;
     return "the exact tangent has no factor (an instability, or too large a step): " +
            std::string(failure.what());
@@ -138,10 +138,10 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Con
 {
   Kinematics motion{space_->with_ghosts(u), {}, {}};
   if (!step.is_static) {
-    const double inverse_h = step.inverse();
-    const OwnedField rate{(u.value - old.u.value) * inverse_h};
-    motion.v = space_->with_ghosts(rate);
-    motion.a = space_->with_ghosts({(rate.value - old.v.value) * inverse_h});
+    const core::Rates rate = step.rates();
+    const OwnedField v{(u.value - old.u.value) * rate.velocity};
+    motion.v = space_->with_ghosts(v);
+    motion.a = space_->with_ghosts({(v.value - old.v.value) * rate.acceleration});
   }
   OwnedField internal = space_->zero(), inertia = space_->zero();
   if (elements)
@@ -178,7 +178,7 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
             step.load * target.value[3 * local + a] - iterate.value[3 * local + a];
   }
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
-  if (moves) r.value -= operate_by_elements(at_, step.inverse(), prescribed).value;
+  if (moves) r.value -= operate_by_elements(at_, step.rates(), prescribed).value;
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
   if (current_->older || more.stiffness)

@@ -57,7 +57,7 @@ struct Work
 };
 
 /// The deformable bodies: one or more volumes of the mesh in one operator
-///   A = M/h² + B/h + K,  B = αM + βK   (static: A = K)    [N/m].
+///   A = M/(h h̄) + B/h + K,  B = αM + βK   (static: A = K)    [N/m].
 class Tissue
 {
  public:
@@ -75,7 +75,7 @@ class Tissue
   /// Linearises at `iterate` within the step that began at `old` and solves for the motion without
   /// constraints, under loads that are linearised there as well; those that follow the tissue make
   /// it an approach. `goes_on`: within the step from the last linearisation. Linear tissue keeps
-  /// one assembled and factored operator per distinct h. Collective.
+  /// one assembled and factored operator per distinct rates. Collective.
   FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
                          const fem::Load& more = {}, bool goes_on = false);
 
@@ -115,7 +115,7 @@ class Tissue
   /// Collective.
   solve::HalfSolution begin(const OwnedField& forces);
 
-  /// r = f_ext - f_int(u) - M(Δu/h - v)/h - BΔu/h [N] on free dofs, and the size of its terms.
+  /// r = f_ext - f_int(u) - M(Δu/h - v)/h̄ - BΔu/h [N] on free dofs, and the size of its terms.
   /// `scale` gets ‖f_ext‖ + ‖f_int‖ + ‖inertia‖, but at least 1e-5 E V^(2/3): an unloaded body is
   /// in balance although its round-off is as large as its forces. Collective.
   OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
@@ -142,15 +142,15 @@ class Tissue
   /// rank. Collective.
   bool configure(const fem::GhostedField& u, Configuration& at) const;
   /// Fills the values of the operator. Not collective.
-  void assemble(const Configuration& at, double inverse_h);
+  void assemble(const Configuration& at, const core::Rates& rate);
 
   /// A d with the matrix assembled last [N]. Collective.
   OwnedField times(const OwnedField& d) const { return values_.times(*space_, d); }
   /// The same element by element, supports left out. Collective.
-  OwnedField operate_by_elements(const Configuration& at, double inverse_h,
+  OwnedField operate_by_elements(const Configuration& at, const core::Rates& rate,
                                  const OwnedField& d) const
   {
-    return elements_->operate(at, inverse_h, space_->with_ghosts(d));
+    return elements_->operate(at, rate, space_->with_ghosts(d));
   }
 
   const fem::Dirichlet& fixed() const { return fixed_; }
@@ -168,7 +168,7 @@ class Tissue
  private:
   struct Operator
   {
-    double inverse_h = -1.0;
+    std::optional<core::Rates> rate;         ///< none: not assembled yet, or to be again
     Configuration at;                        ///< it was assembled with; empty for linear tissue
     std::vector<Mat3> R_factor;              ///< rotations its factor was made with
     bool older = false;                      ///< the factor is that of an older operator
@@ -216,7 +216,8 @@ class Tissue
   /// Dofs that a prescribed displacement holds: owned dof and which condition.
   std::vector<std::pair<Eigen::Index, std::size_t>> tool_dofs_;
   std::vector<std::size_t> tool_elements_;  ///< that touch them
-  /// One per distinct h for linear tissue. Else one, filled again when h or any rotation changes.
+  /// One per distinct pair of rates for linear tissue. Else one, filled again when these or any
+  /// rotation change.
   std::vector<Operator> operators_;
   Operator* current_ = nullptr;
   int factor_version_ = 0;

@@ -185,7 +185,7 @@ void time_assembly(const Bench& bench, const test::BlockShape& shape, const std:
     tissue::Configuration at;
     const double seconds = bench.median([&] {
       if (turns || at.R.empty()) body.tissue.configure(u_g, at);
-      body.tissue.assemble(at, 100.0);
+      body.tissue.assemble(at, {100.0, 100.0});
     });
     bench.figure((turns ? "assembly_corotational" : "assembly_linear") + suffix, seconds, "s");
     if (turns) continue;

@@ -28,6 +28,12 @@ driver::Scenario needle_scenario(const BlockShape& shape)
 
 Run run(const driver::Scenario& scenario)
 {
+  const auto steps = static_cast<std::size_t>(driver::step_count(scenario.time));
+  return run(scenario, std::vector<double>(steps, scenario.time.step));
+}
+
+Run run(const driver::Scenario& scenario, const std::vector<double>& lengths)
+{
   const base::Comm comm(MPI_COMM_WORLD);
   driver::Simulation simulation(scenario, comm);
   Run run;
@@ -38,10 +44,11 @@ Run run(const driver::Scenario& scenario)
     run.reports.push_back(result.report);
   };
   keep();
-  const int steps = static_cast<int>(std::ceil(scenario.time.end / scenario.time.step - 1e-6));
   const bool is_static = scenario.time.analysis == driver::Analysis::equilibrium;
-  for (int n = 1; n <= steps; ++n) {
-    const core::TimeStep now{n * scenario.time.step, scenario.time.step, is_static};
+  double t = 0.0;
+  for (double h : lengths) {
+    t += h;
+    const core::TimeStep now{t, h, is_static};
     result = is_static ? simulation.equilibrium(run.states.back(), now)
                        : simulation.step(run.states.back(), now);
     keep();

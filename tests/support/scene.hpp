@@ -31,5 +31,7 @@ struct Run
   core::Ledger ledger;
 };
 Run run(const driver::Scenario& scenario);
+/// The same with steps of given lengths [s], whatever the scenario says of them.
+Run run(const driver::Scenario& scenario, const std::vector<double>& lengths);
 
 }  // namespace trocar::test

@@ -1,4 +1,5 @@
 #include "constraint/reduce.hpp"
+#include "support/dense.hpp"
 
 #include <gtest/gtest.h>
 
@@ -92,7 +93,7 @@ struct Bodies
       const MatX A = spd(dofs - held, static_cast<double>(dofs));
       const MatX lever = dense.levers[all.size()].rightCols(dofs - held);
       all.push_back({held, core::Cholesky(A), numbers(dofs - held, 1, 0.2)});
-      gives += lever * A.llt().solve(lever.transpose());
+      gives += lever * test::solved(A, lever.transpose());
       moved += lever * all.back().free_increment;
     }
   }
@@ -251,7 +252,7 @@ TEST(Reduction, OfATissueIsThatOfItsDenseOperator)
     gap[i] = row.gap;
   }
   for (int node : mesh::group_nodes(body.mesh, "z0")) H.middleCols<3>(3 * node).setZero();
-  const MatX W = H * A.llt().solve(H.transpose());
+  const MatX W = H * test::solved(A, H.transpose());
   EXPECT_LT((problem.W - W).norm(), 1e-10 * W.norm());
   EXPECT_EQ(problem.W.row(3).norm(), 0.0);  // held: nothing can move it
   const VecX free = H * body.space.gather(body.tissue.finish(motion, {}, {})).value;

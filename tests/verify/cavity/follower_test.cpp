@@ -2,6 +2,7 @@
 
 #include "support/body.hpp"
 #include "support/cavity.hpp"
+#include "support/dense.hpp"
 
 namespace trocar {
 namespace {
@@ -65,7 +66,7 @@ struct Dense
       VecX r(n + 1);
       r.head(n) = (p * g - K * u)(free);
       r[n] = law::volume(wall.surface(), x) - wall.volume();
-      const VecX d = T.partialPivLu().solve(r);
+      const VecX d = test::solved(T, r);
       u(free) += d.head(n);
       p += d[n];
       if (d.head(n).norm() < 1e-15 * u.norm()) break;

@@ -113,7 +113,7 @@ TEST(Elements, RemainderOfEveryExactTangentIsQuadratic)
     const fem::OwnedField u = test::nodal(body, deformed), d = test::nodal(body, direction);
     tissue::Configuration at;
     ASSERT_TRUE(body.tissue.configure(body.space.with_ghosts(u), at));
-    body.tissue.assemble(at, 0.0);
+    body.tissue.assemble(at, {});
     const fem::OwnedField K_d = body.tissue.times(d), f = inner_forces(body, u);
     std::vector<double> rest;
     for (double step : {0.02, 0.01, 0.005}) {
@@ -137,9 +137,9 @@ TEST(Elements, MatrixAndElementLoopAreOneOperator)
       const fem::OwnedField u = test::nodal(body, deformed), d = test::nodal(body, direction);
       tissue::Configuration at;
       ASSERT_TRUE(body.tissue.configure(body.space.with_ghosts(u), at));
-      body.tissue.assemble(at, 100.0);
+      body.tissue.assemble(at, {100.0, 100.0});
       const fem::OwnedField by_matrix = body.tissue.times(d);
-      const fem::OwnedField by_loop = body.tissue.operate_by_elements(at, 100.0, d);
+      const fem::OwnedField by_loop = body.tissue.operate_by_elements(at, {100.0, 100.0}, d);
       EXPECT_LT(body.space.norm({by_matrix.value - by_loop.value}),
                 1e-12 * body.space.norm(by_loop))
           << kind.name;

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-#include "tissue/element_blocks.hpp"
 #include "tissue/elements_of.hpp"
 
-// Geometry, rotations and operator of the tets: definitions for linear_tets.cpp and
-// quadratic_tets.cpp alone.
+// Geometry and rotations of the tets: definitions for linear_tets.cpp and quadratic_tets.cpp alone.
 namespace trocar::tissue {
 
 template <int N>
@@ -172,86 +170,6 @@ void ElementsOf<N>::configure_for(const std::vector<std::size_t>& tets, const Gh
   for (std::size_t e : tets)
     for (std::size_t point = points * e; point < points * (e + 1); ++point)
       at.R[point] = core::polar_rotation(Mat3::Identity() + gradient(nodal(u, e), point));
-}
-
-/// ∂P/∂F : D at a point, without what a shared dilatation adds [Pa].
-template <int N>
-Mat3 ElementsOf<N>::increment(const Configuration& at, std::size_t e, std::size_t point,
-                              const Mat3& D) const
-{
-  const Material& m = material(e);
-  const Mat3& R = at.R[point];
-  const Mat3 G = exact() ? at.G[point] : Mat3::Zero();
-  Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
-  if (exact())
-    P += at.p[static_cast<Eigen::Index>(point)] *
-         energy::dilatation_increment(settings_.model, settings_.tangent, R, G, D);
-  const double lambda = lambda_at_point(m);
-  if (lambda == 0.0) return P;
-  const Mat3 by = dilatation_gradient(at, point);
-  return P + lambda * by.cwiseProduct(D).sum() * by;
-}
-
-template <int N>
-void ElementsOf<N>::assemble(const Configuration& at, double inverse_h,
-                             const fem::BlockPattern& pattern, fem::BlockMatrix& values) const
-{
-  for (std::size_t e = 0; e < tets(); ++e) {
-    const Material& m = material(e);
-    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
-    const double scale_m = (inverse_h + m.rayleigh_mass) * inverse_h * m.density;
-    const auto slots = pattern.slots(e);
-    const fem::PointShape<N>* shape = &shapes_[points * e];
-    const Mat3* R = &at.R[points * e];
-    const double lambda = exact() ? 0.0 : scale_k * lambda_at_point(m);
-    fem::ElementBlocks<N> blocks =
-        operator_blocks<N>(lambda, exact() ? 0.0 : scale_k * m.mu(), shape, R, mass_form(e),
-                           scale_m * mass_factor(e), slots);
-    for (std::size_t q = 0; exact() && q < points; ++q)
-      add_tangent<N>(
-          shape[q], scale_k, [&](const Mat3& D) { return increment(at, e, points * e + q, D); },
-          slots, blocks);
-    if (settings_.dilatation == Dilatation::element) {
-      Nodal sum = Nodal::Zero();
-      for (std::size_t q = 0; q < points; ++q)
-        sum += shape[q].volume * dilatation_gradient(at, points * e + q) * shape[q].gradient;
-      add_rank_one<N>(sum, scale_k * lambda_of_mean(m) / volume_[e], slots, blocks);
-    }
-    values.add(slots, blocks);
-  }
-  if (patches_) add_patches(at, inverse_h, pattern, values);
-}
-
-template <int N>
-void ElementsOf<N>::add_patches(const Configuration& at, double inverse_h,
-                                const fem::BlockPattern& pattern, fem::BlockMatrix& values) const
-{
-  const auto share = fem::corner_weights<N>();
-  std::vector<int> place(static_cast<std::size_t>(space_->local()));
-  Eigen::Matrix3Xd b;
-  for (std::size_t v = 0; v < patches_->size(); ++v) {
-    const auto nodes = cliques_.nodes(v);
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      place[static_cast<std::size_t>(nodes[i])] = static_cast<int>(i);
-    b.setZero(3, static_cast<Eigen::Index>(nodes.size()));
-    for (std::size_t k = patches_->start[v]; k < patches_->start[v + 1]; ++k) {
-      const Patches::Member& member = patches_->member[k];
-      const auto of_tet = space_->nodes(member.tet);
-      for (std::size_t q = 0; q < points; ++q) {
-        const std::size_t point = points * member.tet + q;
-        const Nodal part = share(member.corner, static_cast<Eigen::Index>(q)) *
-                           shapes_[point].volume * dilatation_gradient(at, point) *
-                           shapes_[point].gradient;
-        for (std::size_t a = 0; a < N; ++a)
-          b.col(place[static_cast<std::size_t>(of_tet[a])]) +=
-              part.col(static_cast<Eigen::Index>(a));
-      }
-    }
-    const Material& m = settings_.materials[static_cast<std::size_t>(patches_->region[v])];
-    const double scale_k = 1.0 + m.rayleigh_stiffness * inverse_h;
-    values.add_rank_one(pattern.clique_slots(v), b,
-                        scale_k * lambda_of_mean(m) / patches_->measure[v]);
-  }
 }
 
 template <int N>
