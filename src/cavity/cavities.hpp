@@ -162,6 +162,8 @@ class Cavities
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   law::Edge edge(int e, const State& state, double t) const;
+  law::Flows flows(const State& state, const VecX& p, double t) const;
+  double amount_at_reference(int i, const State& state, double at_zero) const;
   const VoidPiece* entered(int cavity, const std::vector<VoidPiece>& voids,
                            const Shape& shape) const;
   VecX gradient(int i, const Shape& shape) const;

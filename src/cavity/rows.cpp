@@ -30,24 +30,55 @@ law::Edge Cavities::edge(int e, const State& state, double t) const
   return edge;
 }
 
+/// What the network does at pressures p. An edge carries the fluid of its compressible end.
+law::Flows Cavities::flows(const State& state, const VecX& p, double t) const
+{
+  std::vector<law::Edge> edges;
+  for (int e = 0; e < static_cast<int>(settings_.edges.size()); ++e) {
+    law::Edge one = edge(e, state, t);
+    for (int end : {one.from, one.to}) {
+      if (end < 0 || !settings_.cavities[index(end)].fluid.compressible()) continue;
+      const law::FluidLaw& carried = settings_.cavities[index(end)].fluid;
+      one.density_from = carried.density(one.from >= 0 ? p[one.from] : 0.0);
+      one.density_to = carried.density(one.to >= 0 ? p[one.to] : 0.0);
+    }
+    edges.push_back(one);
+  }
+  return law::network_flows(edges, p);
+}
+
+/// An amount at p = 0 as the cavity counts its own, at its reference pressure [m³].
+double Cavities::amount_at_reference(int i, const State& state, double at_zero) const
+{
+  return at_zero / settings_.cavities[index(i)].fluid.density(state.cavity[index(i)].reference);
+}
+
+// ∂V_law,i/∂p_j of the network is h L_ij / ρ_i with its Laplacian L and the densities ρ. In the
+// compliance it is h L_ij / √(ρ_i ρ_j), symmetric positive semidefinite as rows must be and right
+// where densities are equal; the fluids are linearised until they settle, so that the answer is
+// exact.
 Fluid Cavities::fluid(const State& state, const VecX& p, const TimeStep& now) const
 {
   Fluid fluid{VecX::Zero(size()), MatX::Zero(size(), size()), VecX::Zero(size())};
+  const bool flowing = !settings_.edges.empty() && now.t > 0.0;  // the start takes no time
+  law::Flows network;
+  if (flowing) network = flows(state, p, now.t);
+  VecX root = VecX::Ones(size());  // of the densities
   for (int i = 0; i < size(); ++i) {
     const CavityState& mine = state.cavity[index(i)];
+    const law::FluidLaw& law = settings_.cavities[index(i)].fluid;
     const double V0 = walls_[index(i)].volume();
-    const auto answer = settings_.cavities[index(i)].fluid.at(p[i], mine.amount, mine.reference);
+    const double more = flowing ? amount_at_reference(i, state, now.h * network.inflow[i]) : 0.0;
+    const auto answer = law.at(p[i], mine.amount + more, mine.reference);
     fluid.volume[i] = V0 + now.load * (answer.volume - V0);
     fluid.compliance(i, i) = now.load * answer.compliance;
+    root[i] = std::sqrt(law.density(p[i]));
   }
-  if (settings_.edges.empty() || !(now.t > 0.0)) return fluid;  // the start takes no time
-  std::vector<law::Edge> edges;
-  for (int e = 0; e < static_cast<int>(settings_.edges.size()); ++e)
-    edges.push_back(edge(e, state, now.t));
-  const law::Flows flows = law::network_flows(edges, p);
-  fluid.volume += now.h * flows.inflow;
-  fluid.compliance += now.h * flows.conductance;
-  fluid.round_off = 1e-15 * now.h * (flows.conductance.cwiseAbs() * p.cwiseAbs());
+  if (!flowing) return fluid;
+  const MatX by_volume =
+      root.cwiseInverse().asDiagonal() * network.conductance * root.cwiseInverse().asDiagonal();
+  fluid.compliance += now.h * by_volume;
+  fluid.round_off = 1e-15 * now.h * (by_volume.cwiseAbs() * p.cwiseAbs());
   return fluid;
 }
 
@@ -185,19 +216,13 @@ std::vector<CavityReport> Cavities::accept(State& state, const OwnedField& u, co
     reports.push_back(report);
   }
   if (settings_.edges.empty() || !(now.t > 0.0)) return reports;
-  std::vector<law::Edge> edges;
-  for (int e = 0; e < static_cast<int>(settings_.edges.size()); ++e)
-    edges.push_back(edge(e, state, now.t));
-  const law::Flows flows = law::network_flows(edges, p);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    state.edge[e].flow = flows.edge[static_cast<Eigen::Index>(e)];
+  const law::Flows network = flows(state, p, now.t);
+  for (std::size_t e = 0; e < state.edge.size(); ++e) {
+    state.edge[e].flow = network.edge[static_cast<Eigen::Index>(e)];
     state.edge[e].moved += now.h * state.edge[e].flow;
   }
-  for (int i = 0; i < size(); ++i) {
-    CavityState& mine = state.cavity[index(i)];
-    const auto answer = settings_.cavities[index(i)].fluid.at(p[i], mine.amount, mine.reference);
-    mine.amount += now.h * flows.inflow[i] / answer.per_amount;
-  }
+  for (int i = 0; i < size(); ++i)
+    state.cavity[index(i)].amount += amount_at_reference(i, state, now.h * network.inflow[i]);
   return reports;
 }
 

@@ -13,7 +13,8 @@ std::vector<OptionSpec> general_options()
       choice("analysis", "dynamic", {"dynamic", "static", "pv_curve"},
              "steps in time; equilibrium: one, or a quasi-static path with time_end; or "
              "equilibria with a cavity held at one volume after the other"),
-      positive("time_step", "0.01", "s", "step length h"),
+      positive("time_step", "0.01", "s",
+               "step length h; equal shorter ones where time_end is no whole number of them"),
       not_negative("time_end", "0", "s", "end of the run, 0 = no steps (static: one equilibrium)"),
       choice("time_initial", "unstressed", {"unstressed", "equilibrium"},
              "start at rest without stress, or in balance with gravity and loads"),

@@ -67,6 +67,19 @@ FluidLaw::Answer FluidLaw::at(double p, double amount, double reference) const
   }
 }
 
+double FluidLaw::density(double p) const
+{
+  if (!compressible()) return 1.0;
+  return 1.0 / at(p, 1.0, 0.0).per_amount;
+}
+
+bool FluidLaw::mixes_with(const FluidLaw& other) const
+{
+  if (kind == Kind::pressure || other.kind == Kind::pressure) return true;  // a reservoir of it
+  if (!compressible() && !other.compressible()) return true;
+  return kind == other.kind && bulk_modulus == other.bulk_modulus && ambient == other.ambient;
+}
+
 Flows network_flows(const std::vector<Edge>& edges, const VecX& p)
 {
   Flows flows{VecX::Zero(static_cast<Eigen::Index>(edges.size())), VecX::Zero(p.size()),
@@ -77,17 +90,19 @@ Flows network_flows(const std::vector<Edge>& edges, const VecX& p)
     const double conductance = edge.valve && drop <= 0.0 ? 0.0 : edge.conductance;
     const double flow = conductance * drop + edge.flow;
     flows.edge[static_cast<Eigen::Index>(e)] = flow;
+    const double density = flow >= 0.0 ? edge.density_from : edge.density_to;
+    const double amount = density * flow, by_drop = density * conductance;
     if (edge.from >= 0) {
-      flows.inflow[edge.from] -= flow;
-      flows.conductance(edge.from, edge.from) += conductance;
+      flows.inflow[edge.from] -= amount;
+      flows.conductance(edge.from, edge.from) += by_drop;
     }
     if (edge.to >= 0) {
-      flows.inflow[edge.to] += flow;
-      flows.conductance(edge.to, edge.to) += conductance;
+      flows.inflow[edge.to] += amount;
+      flows.conductance(edge.to, edge.to) += by_drop;
     }
     if (edge.from >= 0 && edge.to >= 0) {
-      flows.conductance(edge.from, edge.to) -= conductance;
-      flows.conductance(edge.to, edge.from) -= conductance;
+      flows.conductance(edge.from, edge.to) -= by_drop;
+      flows.conductance(edge.to, edge.from) -= by_drop;
     }
   }
   return flows;

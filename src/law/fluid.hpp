@@ -51,23 +51,33 @@ struct FluidLaw
   /// V_law and D at p for a fluid that takes V_f = `amount` at p_0 = `reference`. A gas is
   /// continued straight below a tenth of the ambient pressure.
   Answer at(double p, double amount, double reference) const;
+
+  bool compressible() const { return kind == Kind::bulk || kind == Kind::gas; }
+  /// Density at p over that at p = 0: a gas (p + p_a)/p_a, a bulk modulus e^(p/K_f), else 1. An
+  /// amount V_f at p_0 is V_f times the density there.
+  double density(double p) const;
+  /// Fluids of two cavities that may flow into each other.
+  bool mixes_with(const FluidLaw& other) const;
 };
 
-/// A way for fluid between two cavities, or one and outside (-1, where the pressure is 0).
+/// A way for fluid between two cavities, or one and outside (-1, where the pressure is 0). It moves
+/// amount: the flow at the pressure it comes from times the density there.
 struct Edge
 {
   int from = -1, to = -1;
-  double conductance = 0.0;  ///< 1/R [m³/(s Pa)]; 0: closed
-  bool valve = false;        ///< only from `from` to `to`
-  double flow = 0.0;         ///< prescribed flow beside it [m³/s]
+  double conductance = 0.0;                     ///< 1/R [m³/(s Pa)]; 0: closed
+  bool valve = false;                           ///< only from `from` to `to`
+  double flow = 0.0;                            ///< prescribed flow beside it [m³/s]
+  double density_from = 1.0, density_to = 1.0;  ///< of its fluid at either end, over that at p = 0
 };
 
 /// What a network does at cavity pressures p.
 struct Flows
 {
-  VecX edge;         ///< flow from `from` to `to` (edges) [m³/s]
-  VecX inflow;       ///< into every cavity [m³/s]
-  MatX conductance;  ///< -∂inflow/∂p, symmetric positive semidefinite [m³/(s Pa)]
+  VecX edge;         ///< flow from `from` to `to`, at the pressure it comes from (edges) [m³/s]
+  VecX inflow;       ///< of amount into every cavity, at p = 0 [m³/s]
+  MatX conductance;  ///< -∂inflow/∂p with the densities held, symmetric positive semidefinite
+                     ///< [m³/(s Pa)]
 };
 Flows network_flows(const std::vector<Edge>& edges, const VecX& p);
 

@@ -2,7 +2,7 @@
 import itertools
 import os
 
-from harness import FOLDER, MESHES, check, completed, finish, histories, refusal, written
+from harness import FOLDER, MESHES, check, completed, finish, histories, refusal, run, written
 
 KUHN = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
 
@@ -137,6 +137,24 @@ refuses("edge of no needle", 64, ["-edge_needle", "pin"],
         {"-edges": "leak:hole:outside", "-edge_leak_needle": "pin"})
 refuses("hole without a needle", 64, ["-edge_needle"],
         {"-edges": "leak:hole:outside", "-edge_leak_resistance": "1e9", "-edge_leak_hole_radius": "1e-4"})
+
+
+def apart(groups):
+    """One wall for each of the holes."""
+    groups["other"] = [f for f in groups["wall"] if min(f) > CORNERS // 2]
+    groups["wall"] = [f for f in groups["wall"] if min(f) <= CORNERS // 2]
+
+
+CORNERS = 6 ** 3
+unlike = {"-mesh": block("unlike", {(1, 1, 1), (3, 3, 3)}, apart, n=5), "-cavities": "hole,second",
+          "-cavity_second_surface": "other", "-edges": "tube:hole:second", "-edge_tube_resistance": "1e9",
+          "-time_step": "0.1", "-time_end": "0.2", "-cavity_hole_law": "gas", "-cavity_hole_ambient_pressure": "1e5"}
+refuses("edge between gas and liquid", 64, ["-edges", "tube", "unlike", "hole", "second"], unlike)
+refuses("edge between two gases", 64, ["-edges", "tube", "unlike"],
+        {**unlike, "-cavity_second_law": "gas", "-cavity_second_ambient_pressure": "9e4"})
+process = run({**good, **unlike, "-cavity_second_law": "gas", "-cavity_second_ambient_pressure": "1e5",
+               "-output_dir": os.path.join(FOLDER, "alike")}, 2)
+check(process.returncode == 0, f"an edge between like gases runs: {process.returncode} {process.stderr[-300:]}")
 refuses("P-V curve without a cavity", 64, ["pv_curve"], {"-analysis": "pv_curve", "-cavities": '""'},
         remove=["-cavity_hole_surface"])
 refuses("P-V curve on one side", 64, ["-pv_low"], {"-analysis": "pv_curve", "-pv_low": "1.1"})

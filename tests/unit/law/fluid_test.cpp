@@ -50,6 +50,21 @@ TEST(FluidLaws, GasObeysBoyle)
 }
 
 // No wiggles: between points with falling values the spline falls.
+// An amount is volume times density, whatever the pressure.
+TEST(FluidLaws, DensityIsThatOfTheAmount)
+{
+  law::FluidLaw gas{law::FluidLaw::Kind::gas, 0.0, 1e4}, bulk{law::FluidLaw::Kind::bulk, 3e4, 0.0};
+  for (const law::FluidLaw& fluid : {gas, bulk})
+    for (double p : {-4000.0, 0.0, 2500.0, 9000.0})
+      EXPECT_NEAR(fluid.at(p, 2e-6, 1000.0).volume * fluid.density(p), 2e-6 * fluid.density(1000.0),
+                  1e-20);
+  EXPECT_EQ(law::FluidLaw{}.density(5000.0), 1.0);
+  EXPECT_TRUE(gas.mixes_with(gas));
+  EXPECT_FALSE(gas.mixes_with(bulk));
+  EXPECT_FALSE(gas.mixes_with(law::FluidLaw{}));
+  EXPECT_TRUE(gas.mixes_with({law::FluidLaw::Kind::pressure}));
+}
+
 TEST(MonotoneSpline, KeepsMonotony)
 {
   const law::MonotoneSpline spline({0, 1, 1.1, 2, 5, 5.01, 9}, {5, 4.9, 1, 0.9, 0.9, 0.2, -3});
