@@ -30,7 +30,7 @@ install_packages() {
   "${as_root[@]}" apt-get update -qq >"$log" 2>&1 || { cat "$log" >&2; return 1; }
   echo "install: ${missing[*]}"
   # The simulation's closing lines: "Need to get 211 MB of archives", "1,204 MB of … disk space".
-  LC_ALL=C apt-get install --no-install-recommends --assume-no "${missing[@]}" 2>/dev/null |
+  "${as_root[@]}" env LC_ALL=C apt-get install --no-install-recommends --assume-no "${missing[@]}" 2>/dev/null |
     sed -nE 's/^(Need to get|After this operation,) (.*)\.$/install:   \1 \2/p' || true
   "${as_root[@]}" "${apt[@]}" install "${missing[@]}" >"$log" 2>&1 || { cat "$log" >&2; return 1; }
   rm -f "$log"
@@ -47,21 +47,20 @@ configure() {
 # Builds targets (none: all) in the folder $1: every tenth of the way a line, and whatever a
 # compiler says.
 compile() {
-  local folder=$1 begun=$SECONDS line percent shown=0 status
+  local folder=$1 begun=$SECONDS line percent shown=0 status=0
   shift
   NINJA_STATUS='[%p] ' cmake --build "$folder" ${*:+--target "$@"} 2>&1 |
     while IFS= read -r line; do
       if [[ $line =~ ^\[\ *([0-9]+)%\] ]]; then
         percent=${BASH_REMATCH[1]}
-        if [ $((percent / 10)) -gt "$shown" ]; then
+        if [ $((percent / 10)) -gt "$shown" ] && [ $((SECONDS - begun)) -ge 2 ]; then
           shown=$((percent / 10))
           printf 'build: %3d %%\n' $((10 * shown))
         fi
-      elif [[ $line != "ninja: "* ]]; then
+      elif [[ $line != "ninja: no work"* && $line != "ninja: Entering"* ]]; then
         printf '%s\n' "$line"
       fi
-    done
-  status=${PIPESTATUS[0]}
+    done || status=$?
   if [ $((SECONDS - begun)) -ge 2 ]; then echo "build: done in $((SECONDS - begun)) s"; fi
   return "$status"
 }

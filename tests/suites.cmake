@@ -1,10 +1,11 @@
-# Read by ctest itself, with `program`, `list`, `prefix`, `properties` set: one test per suite of a
+# Read by ctest itself, with `program`, `list`, `prefix`, `properties` and `self`, who says so, set: one test per suite of a
 # GoogleTest program, found after the build (as gtest_discover_tests' PRE_TEST does per test).
 if(NOT EXISTS "${program}")
   add_test("${prefix}_NOT_BUILT" "${prefix}_NOT_BUILT")
   return()
 endif()
-if(NOT EXISTS "${list}" OR "${program}" IS_NEWER_THAN "${list}")
+if(NOT EXISTS "${list}" OR "${program}" IS_NEWER_THAN "${list}" OR
+   "${self}" IS_NEWER_THAN "${list}" OR "${CMAKE_CURRENT_LIST_FILE}" IS_NEWER_THAN "${list}")
   execute_process(COMMAND "${program}" --gtest_list_tests OUTPUT_VARIABLE lines
                   RESULT_VARIABLE failed)
   if(failed)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <optional>
 
 namespace trocar::core {
 
@@ -23,12 +24,12 @@ struct TimeStep
   bool is_static = false;
   double load = 1.0;  ///< share of gravity, traction and prescribed displacement (load steps)
   double lead = 1.0;  ///< of u in h v = lead (u - û): 1 backward Euler, 3/2 BDF2 (û: the past)
-  double interval = 0.0;  ///< h̄ in a = (v - v̂)/h̄ [s]; 0: h
+  std::optional<double> interval{};  ///< h̄ > 0 in a = (v - v̂)/h̄ [s]; none: h
 
   Rates rates() const
   {
     if (is_static) return {};
-    return {lead / h, 1.0 / (interval > 0.0 ? interval : h)};
+    return {lead / h, 1.0 / interval.value_or(h)};
   }
 };
 

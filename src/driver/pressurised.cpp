@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "driver/simulation.hpp"
 #include "law/solve.hpp"

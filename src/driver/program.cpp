@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <iostream>
+#include <string>
 #include <thread>
 
 #include "base/petsc.hpp"
@@ -38,7 +40,8 @@ class Clock
     const TimeSettings& time = simulation_.scenario().time;
     const long steps = step_count(time);
     for (long n = 1; n <= steps; ++n) {
-      const double t = static_cast<double>(n) * time.step;
+      const bool not_whole = time.step != time.asked;  // T/N times N may miss T by round-off
+      const double t = n == steps && not_whole ? time.end : static_cast<double>(n) * time.step;
       const bool output =
           n == steps || n % static_cast<long>(simulation_.scenario().output.every) == 0;
       state = advance(std::move(state), {t, time.step, time.analysis == Analysis::equilibrium}, 0,

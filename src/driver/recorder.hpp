@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "driver/option_source.hpp"
 #include "driver/simulation.hpp"

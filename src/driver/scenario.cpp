@@ -1,6 +1,7 @@
 #include "driver/scenario.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "core/csv.hpp"

@@ -1,5 +1,7 @@
 #include "driver/scenario_checks.hpp"
 
+#include <string>
+
 #include "core/words.hpp"
 
 namespace trocar::driver {

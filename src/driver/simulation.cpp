@@ -29,7 +29,8 @@ Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
   driven_at_start_ = !scenario.tissue.boundary.displacements.empty() || cavities_.has_value();
   for (const needle::NeedleSettings& settings : scenario.needles) {
     needles_.emplace_back(settings);
-    driven_at_start_ = driven_at_start_ || settings.motion.inserted > 0.0;
+    driven_at_start_ =
+        driven_at_start_ || settings.motion.inserted > 0.0 || settings.motion.trajectory;
   }
   if (needles_.empty()) return;
   locator_.emplace(scenario.mesh);
@@ -41,8 +42,9 @@ void Simulation::prepare()
   const bool is_static =
       scenario_.time.analysis != Analysis::dynamic || scenario_.time.start_in_equilibrium;
   core::TimeStep first{0.0, scenario_.time.step, is_static};
-  State start, unused;
-  past_of(start, first, unused, start.velocity);
+  State unused;
+  Differenced velocity;
+  past_of({}, first, unused, velocity);
   tissue_.prepare(first);
 }
 

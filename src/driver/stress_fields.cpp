@@ -1,6 +1,8 @@
 #include "driver/stress_fields.hpp"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/dense.hpp"
 #include "mesh/quadratic.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "driver/simulation.hpp"
 #include "io/results.hpp"
 

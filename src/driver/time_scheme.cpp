@@ -69,7 +69,8 @@ Differenced Simulation::velocity_of(const State& state, double h) const
 // BDF2 (Hairer, Norsett and Wanner 1993, III.5): with r = h/h_before
 //   h v = lead (u - û),  lead = (1 + 2r)/(1 + r),  û = u_n + r²/(1 + 2r) (u_n - u_before),
 // no lag, curvature -h (h + h_before)/6. Its first step is backward Euler's, and one whose length
-// is out of proportion to that before.
+// is out of proportion to that before; where the three velocities have no sound acceleration, the
+// last two make it, to first order.
 const State& Simulation::past_of(const State& old, core::TimeStep& now, State& extrapolated,
                                  Differenced& velocity) const
 {
@@ -86,10 +87,13 @@ const State& Simulation::past_of(const State& old, core::TimeStep& now, State& e
   const Moments end = moments(velocity, 0.0);
   const Moments one = moments(old.velocity, -h) - end;
   const Moments two = moments(old.before->velocity, -h - old.h) - end;
-  const double determinant = one.m * two.q - two.m * one.q;
-  const double c_one = two.q / determinant, c_two = -one.q / determinant;
-  now.interval = -1.0 / (c_one + c_two);
-  const Past past{r * r / (1.0 + 2.0 * r), now.interval * c_two};
+  // 1/Σc and c_two/Σc of the three: some sequences (halves of halves) have no such acceleration, or
+  // a nearly singular one.
+  constexpr double least = 0.25, most = 2.5;  // of h
+  const double interval = (one.m * two.q - two.m * one.q) / (one.q - two.q);
+  const bool three = interval >= least * h && interval <= most * h;
+  now.interval = three ? interval : -moments(old.velocity, -h).m;
+  const Past past{r * r / (1.0 + 2.0 * r), three ? -one.q / (one.q - two.q) : 0.0};
   extrapolated.tissue = old.tissue;
   extrapolated.tissue.u.value += past.u * (old.tissue.u.value - old.before->tissue.u.value);
   extrapolated.tissue.v.value += past.v * (old.tissue.v.value - old.before->tissue.v.value);

@@ -1,6 +1,7 @@
 #include "insertion/clip.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mesh/mesh.hpp"

@@ -1,5 +1,6 @@
 #include "io/results.hpp"
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/dense.hpp"
 #include "law/box_qp.hpp"

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/dense.hpp"
 #include "law/box_qp.hpp"

@@ -1,6 +1,7 @@
 #include "law/volume.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace trocar::law {
 namespace {

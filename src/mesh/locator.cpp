@@ -4,6 +4,7 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <iterator>
+#include <utility>
 
 #include "mesh/quadratic.hpp"
 

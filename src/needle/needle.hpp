@@ -43,7 +43,7 @@ struct NeedleState
 struct Linearised
 {
   int held = 6;           ///< 6 for a beam, all dofs for a rigid needle
-  MatX A;                 ///< M/h² + K (dofs x dofs) [N/m ...]
+  MatX A;                 ///< M/(h h̄) + K (dofs x dofs) [N/m ...]
   VecX r;                 ///< weight - internal - inertia forces (dofs) [N, N m]
   core::Cholesky factor;  ///< of A on the free dofs, when there are any
   VecX free_increment;    ///< A⁻¹ r on the free dofs

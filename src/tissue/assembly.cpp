@@ -1,6 +1,8 @@
 #include "tissue/element_blocks.hpp"
 #include "tissue/elements_of.hpp"
 
+#include <vector>
+
 // The operator of the tets, apart from the rest of them: it takes a compiler as long.
 namespace trocar::tissue {
 
@@ -21,8 +23,8 @@ void ElementsOf<N>::assemble(const Configuration& at, const core::Rates& rate,
                            scale_m * mass_factor(e), slots);
     for (std::size_t q = 0; exact() && q < points; ++q)
       add_tangent<N>(
-          shape[q], scale_k, [&](const Mat3& D) { return increment(at, e, points * e + q, D); },
-          slots, blocks);
+          shape[q], [&](const Mat3& D) { return increment(at, rate, points * e + q, D); }, slots,
+          blocks);
     if (settings_.dilatation == Dilatation::element) {
       Nodal sum = Nodal::Zero();
       for (std::size_t q = 0; q < points; ++q)

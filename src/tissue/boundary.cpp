@@ -1,5 +1,6 @@
 #include "tissue/boundary.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/dense.hpp"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "fem/block_matrix.hpp"
@@ -82,7 +83,7 @@ void add_rank_one(const Eigen::Matrix<double, 3, N>& v, double scale, std::span<
 
 /// Adds V ∂P/∂F of one point to the blocks of a tet; `increment(G)` is ∂P/∂F : G [Pa].
 template <int N, class Increment>
-void add_tangent(const fem::PointShape<N>& shape, double scale, const Increment& increment,
+void add_tangent(const fem::PointShape<N>& shape, const Increment& increment,
                  std::span<const int> slots, fem::ElementBlocks<N>& blocks)
 {
   // Column k of block (a, b) is (∂P/∂F : e_k ⊗ g_b) g_a.
@@ -97,9 +98,9 @@ void add_tangent(const fem::PointShape<N>& shape, double scale, const Increment&
     const int b = fem::block_pairs<N>[p][other ? 0 : 1];
     Mat3 block;
     for (int k = 0; k < 3; ++k)
-      block.col(k) = scale * shape.volume *
-                     (of_node[static_cast<std::size_t>(b)][static_cast<std::size_t>(k)] *
-                      shape.gradient.col(a));
+      block.col(k) =
+          shape.volume * (of_node[static_cast<std::size_t>(b)][static_cast<std::size_t>(k)] *
+                          shape.gradient.col(a));
     blocks[p].head += block.reshaped().template head<8>().array();
     blocks[p].last += block(2, 2);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "tissue/elements_of.hpp"
 
 // Forces, energies and stress of the tets: definitions for linear_tets.cpp and
@@ -143,7 +145,7 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
                                  : m.lambda() * energy::dilatation(settings_.model, R, G);
     if (beta > 0.0) {
       const Mat3 D = gradient(v, point);
-      P += beta * m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
+      P += beta * m.mu() * energy::viscous_shear(settings_.model, R, G, D);
       if (!averaged()) pressure += beta * m.lambda() * by.cwiseProduct(D).sum();
     }
     force += shapes_[point].volume * (P + pressure * by) * shapes_[point].gradient;
@@ -186,9 +188,10 @@ OwnedField ElementsOf<N>::operate(const Configuration& at, const core::Rates& ra
     const Nodal w = nodal(d, e);
     Nodal force = scale_m * mass_factor(e) * w * mass_form(e);
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
-      Mat3 P = increment(at, e, point, gradient(w, point));
-      if (averaged()) P += p[static_cast<Eigen::Index>(point)] * dilatation_gradient(at, point);
-      force += scale_k * shapes_[point].volume * P * shapes_[point].gradient;
+      Mat3 P = increment(at, rate, point, gradient(w, point));
+      if (averaged())
+        P += scale_k * p[static_cast<Eigen::Index>(point)] * dilatation_gradient(at, point);
+      force += shapes_[point].volume * P * shapes_[point].gradient;
     }
     scatter(force, e, product);
   }
@@ -220,9 +223,10 @@ TetWork ElementsOf<N>::work(const Configuration& at, const Kinematics& motion) c
       if (!moves || m.rayleigh_stiffness == 0.0) continue;
       const auto i = static_cast<Eigen::Index>(point);
       const Mat3 D = gradient(v, point);
-      const Mat3 by = energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
-      work.damping_power_stiffness += m.rayleigh_stiffness * shapes_[point].volume *
-                                      (m.mu() * by.cwiseProduct(D).sum() + p_rate[i] * rate[i]);
+      const Mat3 viscous = energy::viscous_shear(settings_.model, R, G, D);
+      work.damping_power_stiffness +=
+          m.rayleigh_stiffness * shapes_[point].volume *
+          (m.mu() * viscous.cwiseProduct(D).sum() + p_rate[i] * rate[i]);
     }
     if (!moves) continue;
     const double inertia = m.density * mass_factor(e) * v.cwiseProduct(v * mass_form(e)).sum();

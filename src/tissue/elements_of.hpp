@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include "core/polar.hpp"
 #include "fem/shape.hpp"
@@ -96,7 +98,8 @@ class ElementsOf final : public Elements
                       const core::VecX& p, OwnedField& internal, OwnedField& inertia) const;
   void add_patches(const Configuration& at, const core::Rates& rate,
                    const fem::BlockPattern& pattern, fem::BlockMatrix& values) const;
-  Mat3 increment(const Configuration& at, std::size_t e, std::size_t point, const Mat3& D) const;
+  Mat3 increment(const Configuration& at, const core::Rates& rate, std::size_t point,
+                 const Mat3& D) const;
 
   const fem::Space* space_;
   ElementSettings settings_;
@@ -109,22 +112,25 @@ class ElementsOf final : public Elements
   std::optional<Patches> patches_;  ///< only with nodal dilatation
 };
 
-/// ∂P/∂F : D at a point, without what a shared dilatation adds [Pa].
+/// (∂P/∂F + r_v ∂P/∂Ḟ) : D at a point, stress and viscous stress, without what a shared dilatation
+/// adds [Pa].
 template <int N>
-Mat3 ElementsOf<N>::increment(const Configuration& at, std::size_t e, std::size_t point,
+Mat3 ElementsOf<N>::increment(const Configuration& at, const core::Rates& rate, std::size_t point,
                               const Mat3& D) const
 {
-  const Material& m = material(e);
+  const Material& m = material(point / points);
   const Mat3& R = at.R[point];
   const Mat3 G = exact() ? at.G[point] : Mat3::Zero();
+  const double damping = m.rayleigh_stiffness * rate.velocity;
   Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
+  if (damping > 0.0) P += damping * m.mu() * energy::viscous_shear(settings_.model, R, G, D);
   if (exact())
     P += at.p[static_cast<Eigen::Index>(point)] *
          energy::dilatation_increment(settings_.model, settings_.tangent, R, G, D);
   const double lambda = lambda_at_point(m);
   if (lambda == 0.0) return P;
   const Mat3 by = dilatation_gradient(at, point);
-  return P + lambda * by.cwiseProduct(D).sum() * by;
+  return P + (1.0 + damping) * lambda * by.cwiseProduct(D).sum() * by;
 }
 
 }  // namespace trocar::tissue

@@ -103,6 +103,17 @@ inline Mat3 dilatation_increment(Model model, Tangent tangent, const Mat3& R, co
   return Mat3::Zero();
 }
 
+/// Shear part of the viscous stress over βμ, linear in the rate D of F: the second Piola-Kirchhoff
+/// stress 2Ė, Ė = sym(FᵀD), of a neo-Hookean body; K₀ in the frame of the rotation of a
+/// corotational one. Symmetric in its action, positive semidefinite, 2 sym(D) at rest, 0 for a spin
+/// D = ωF (there: of equal stretches).
+inline Mat3 viscous_shear(Model model, const Mat3& R, const Mat3& G, const Mat3& D)
+{
+  const Mat3 A = model == Model::neo_hookean ? Mat3(Mat3::Identity() + G) : R;
+  const Mat3 rate = A.transpose() * D;
+  return A * (rate + rate.transpose());
+}
+
 }  // namespace energy
 
 /// Cauchy stress P Fᵀ / det F [Pa]; symmetric when P is that of the polar rotation of F.

@@ -1,4 +1,5 @@
 """What the end-to-end tests share: running the program and reading its results."""
+import itertools
 import os
 import re
 import shutil
@@ -15,6 +16,7 @@ FOLDER = tempfile.mkdtemp(prefix="trocar_test_")
 MESHES = os.path.join(FOLDER, "meshes")
 os.makedirs(MESHES)
 problems = []
+run_numbers = itertools.count()
 refusals = []  # (what, code, words, run under way) of refusal()
 pool = ThreadPoolExecutor(4)  # mpirun waits a second for the other ranks of one that fails
 
@@ -65,7 +67,7 @@ def run(settings, ranks=1, arguments=(), timeout=900, environment=None):
 
 def completed(settings, ranks=1, **more):
     """Runs and demands success; gives the folder of the results."""
-    folder = os.path.join(FOLDER, f"run_{len(os.listdir(FOLDER))}")
+    folder = os.path.join(FOLDER, f"run_{next(run_numbers)}")
     process = run({**settings, "-output_dir": folder, "-quiet": ""}, ranks, **more)
     if process.returncode != 0:
         print(process.stdout[-2000:], process.stderr[-2000:])

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <span>
+
 #include "mesh/mesh.hpp"
 #include "tissue/element_blocks.hpp"
 

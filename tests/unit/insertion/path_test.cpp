@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "insertion/deformed.hpp"
 #include "insertion/insertion.hpp"

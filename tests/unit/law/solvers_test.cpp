@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "law/solve.hpp"
 #include "support/problem.hpp"
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "support/shell.hpp"
 

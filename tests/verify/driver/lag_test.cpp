@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/scene.hpp"
 
 // Steps of turning tissue with the factor of an earlier step against the same run that factors in

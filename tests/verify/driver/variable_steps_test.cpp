@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "support/cavity.hpp"
 
@@ -17,22 +21,26 @@ using core::Vec3;
 constexpr int finest = 1024;  ///< units of time to the end; all steps are whole numbers of them
 constexpr double end = 0.1, unit = end / finest;
 
-enum class Pattern { alternating, random, halved_once };
+enum class Pattern { alternating, random, halved_once, quarters, eighths };
 
-/// Steps of about 2 or 3 times `least` units each; no step is more than twice as long as that
-/// before.
+/// Steps of 1 or 2 times `least` units each; no step is more than twice as long as that before.
+/// Quarters and eighths: 8 times `least`, some of them in parts, as the clock has them when halves
+/// are rejected.
 std::vector<int> pattern(Pattern kind, int least)
 {
   std::vector<int> steps;
   std::mt19937 draw(7);
-  for (int done = 0; done < finest;) {
-    const auto n = static_cast<int>(steps.size());
-    int parts = 2;
-    if (kind == Pattern::alternating) parts = 1 + n % 2;
-    if (kind == Pattern::random) parts = 1 + static_cast<int>(draw() % 2);
-    if (kind == Pattern::halved_once) parts = n == 5 || n == 6 ? 1 : 2;
-    steps.push_back(std::min(parts * least, finest - done));
-    done += steps.back();
+  std::vector<int> parts{8, 8, 8, 4, 2, 2, 8, 8, 4, 2, 1, 1, 8, 8};
+  if (kind == Pattern::quarters) parts = {8, 8, 2, 2, 4, 8, 8, 4, 2, 2, 8, 8};
+  for (int done = 0; done < finest; done += steps.back()) {
+    const std::size_t n = steps.size();
+    int next = 2;
+    if (kind == Pattern::alternating) next = 1 + static_cast<int>(n % 2);
+    if (kind == Pattern::random) next = 1 + static_cast<int>(draw() % 2);
+    if (kind == Pattern::halved_once) next = n == 5 || n == 6 ? 1 : 2;
+    if (kind == Pattern::quarters || kind == Pattern::eighths)
+      next = n < parts.size() ? parts[n] : 8;
+    steps.push_back(std::min(next * least, finest - done));
   }
   return steps;
 }
@@ -118,6 +126,18 @@ TEST(VariableSteps, MassThatIsDriven)
   const Answer force = [](const driver::StepReport& report) { return report.tools[0].x(); };
   // Steps stay far above the time that waves take: the block starts unstrained.
   expect_orders("driven mass", scenario, force, exact, 4);
+  // Halves of halves: BDF2 is of order 1 in some of these steps, and never wild.
+  for (bool second_order : {false, true})
+    for (const Pattern kind : {Pattern::quarters, Pattern::eighths}) {
+      std::vector<double> error;
+      for (int least : {4, 2})
+        error.push_back(
+            worst(answers(scenario, second_order, pattern(kind, least), force), exact, true));
+      std::printf("[ time ] halves of halves, %s: errors %.2e %.2e\n",
+                  second_order ? "bdf2" : "backward Euler", error[0], error[1]);
+      EXPECT_GE(std::log2(error[0] / error[1]), 0.85);
+      EXPECT_LT(error[1], 0.15);
+    }
   // With backward Euler the first step is not a worse one.
   const auto found = answers(scenario, false, {8, 8}, force);
   EXPECT_NEAR(found.at(8), exact.at(8), 0.03 * exact.at(0));
