@@ -108,8 +108,8 @@ class Elements
   virtual void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                              Configuration& at) const = 0;
 
-  /// Adds scale_k K + scale_m M, scale_k = 1 + β r_v, scale_m = (r_a + α) r_v with the rates r_v,
-  /// r_a of velocity and acceleration [N/m].
+  /// Adds K + β r_v K_v + (r_a + α) r_v M [N/m] with the rates r_v, r_a of velocity and
+  /// acceleration; K_v is that of the viscous stress, K itself where K is R K₀ Rᵀ.
   virtual void assemble(const Configuration& at, const core::Rates& rate,
                         const fem::BlockPattern& pattern, fem::BlockMatrix& values) const = 0;
   /// The same operator times d [N], without its matrix and its supports.
