@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "driver/simulation.hpp"
+#include "law/immovable.hpp"
 #include "law/solve.hpp"
 
 // 3 to 5 of the step: rows, the dense problem, the correction.
@@ -146,7 +147,7 @@ double Simulation::lag_tolerance(const core::TimeStep& now, double residual, boo
 {
   constexpr double least = 1e-10, part = 0.1;
   const bool follows = cavities_ && cavities_->follows();
-  const bool iterated = now.is_static || scenario_.time.newton_max > 1;
+  const bool iterated = now.is_static || scenario_.time.newton_max > 1;  // certainly
   const double lag = scenario_.tissue.lag_tolerance;
   const double leads_on = follows ? 1e-4 : std::max(lag, iterated ? 1e-4 : 0.0);
   if (!(follows || (iterated && rows)) || !std::isfinite(residual)) return leads_on;
@@ -167,7 +168,10 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
     problem.start = refreshes > 0 ? pass.lambda.lambda : last.converged ? last.lambda : start;
     pass.lambda = law::solve(problem, scenario_.laws);
     ++ledger_.constraint_solves;
-    if (!pass.lambda.converged) return pass.lambda.why;
+    if (!pass.lambda.converged)
+      return pass.lambda.immovable < 0
+                 ? pass.lambda.why
+                 : pass.lambda.why + ", of " + place_of_row(pass, pass.lambda.immovable);
     report.iterations += pass.lambda.iterations;
     if (!cavities_ || !cavities_->refresh(pass.lambda.lambda, pass.rows.of_cavities, set)) break;
     if (refreshes == most_refreshes) return "the laws of the fluids do not settle";

@@ -13,9 +13,12 @@ double kkt_residual(const Problem& problem, const VecX& lambda)
   double worst = 0.0;
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double w = problem.W(i, i);
-    if (w <= 0.0) continue;
     if (problem.kind[static_cast<std::size_t>(i)] == RowKind::bilateral) {
       worst = std::max(worst, std::abs(delta[i]));
+    } else if (w <= 0.0) {
+      const double asked = -std::copysign(problem.bound[i], delta[i]);
+      if (std::abs(lambda[i] - asked) > 1e-9 * problem.bound[i])
+        worst = std::max(worst, std::abs(delta[i]));
     } else {
       const double F = problem.bound[i];
       const double natural = lambda[i] - std::clamp(lambda[i] - delta[i] / w, -F, F);

@@ -66,6 +66,7 @@ struct Multipliers
   int rank = 0;            ///< numerical rank of W
   double condition = 0.0;  ///< of the kept bilateral rows, at least (0: not found, or none)
   bool nonunique = false;  ///< single λ are not unique (δ, forces and work are)
+  int immovable = -1;      ///< row that nothing can move and whose law its gap breaks; -1: none
   double seconds = 0.0;    ///< wall time of the iteration; finding the rank for the record excluded
   double factor_seconds = 0.0;  ///< wall time of the pseudo-inverse or factor of W_bb
 };
@@ -78,8 +79,8 @@ bool same_states(const Problem& problem, const VecX& a, const VecX& b);
 VecX response(const Problem& problem, const VecX& lambda, const VecX& dg);
 
 /// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
-/// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes).
-/// Rows with W_ii = 0 cannot move and do not count.
+/// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes). A
+/// row that nothing can move, W_ii = 0, is off by |δ_i| where λ_i is not what that gap asks for.
 double kkt_residual(const Problem& problem, const VecX& lambda);
 
 }  // namespace trocar::law

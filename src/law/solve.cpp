@@ -8,15 +8,9 @@
 #include "law/box_qp.hpp"
 #include "law/condensed.hpp"
 #include "law/gauss_seidel.hpp"
+#include "law/immovable.hpp"
 
 namespace trocar::law {
-
-VecX mobility(const Problem& problem)
-{
-  // What is prescribed has columns that are exactly zero. A relative cut would also take rows of
-  // stiff bodies beside very soft ones.
-  return problem.W.diagonal().cwiseMax(0.0);
-}
 
 namespace {
 
@@ -222,6 +216,7 @@ Multipliers solve_fixed(const Problem& problem, const Settings& settings)
     result.converged = false;
     result.why = "a multiplier grows without bound: rows contradict each other";
   }
+  settle_immovable(problem, w, settings.tolerance, result);
   result.delta = problem.W * result.lambda + problem.g;
   if (!result.delta.allFinite()) {
     result.converged = false;
@@ -246,7 +241,11 @@ Multipliers settle_bounds(Problem problem, const Settings& settings)
       const int normal = problem.normal[static_cast<std::size_t>(i)];
       if (normal < 0) continue;
       const double bound = problem.friction[i] * std::max(lambda[normal], 0.0);
-      change = std::max(change, w[i] * std::abs(bound - problem.bound[i]));
+      const double off = std::abs(bound - problem.bound[i]);
+      change = std::max(change, w[i] * off);
+      // Where nothing moves there is no gap to judge it by: the bound itself must settle.
+      if (w[i] <= 0.0 && off > 1e-9 * bound + 1e-12)
+        change = std::max(change, 2.0 * settings.tolerance);
       problem.bound[i] += part * (bound - problem.bound[i]);
     }
     return change;

@@ -10,8 +10,4 @@ namespace trocar::law {
 /// Pure: every rank gets the same answer from the same input.
 Multipliers solve(const Problem& problem, const Settings& settings);
 
-/// W_ii of every row, set to exactly 0 where nothing can move the row (all its dofs are
-/// prescribed): such a row has no multiplier and its gap is what it is.
-VecX mobility(const Problem& problem);
-
 }  // namespace trocar::law

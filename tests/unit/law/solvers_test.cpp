@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "law/solve.hpp"
 #include "support/problem.hpp"
@@ -84,16 +85,79 @@ TEST(Solvers, SoftRowsYieldInProportionToTheirForce)
   }
 }
 
-TEST(Solvers, ARowThatNothingCanMoveHasNoForceAndKeepsItsGap)
+// W_ii = 0 by every kind of row, opening, closed and closing, with every method.
+TEST(Solvers, RowsThatNothingCanMoveGetWhatTheirGapAsksFor)
+{
+  struct Case
+  {
+    RowKind kind;
+    double gap, bound, start, lambda;
+  };
+  const double open = std::numeric_limits<double>::infinity();
+  for (const Case& c : {Case{RowKind::box, 1e-3, 2.0, 0.5, -2.0},
+                        {RowKind::box, -1e-3, 2.0, 0.5, 2.0},
+                        {RowKind::box, 0.0, 2.0, 0.5, 0.5},
+                        {RowKind::box, 0.0, 2.0, 7.0, 2.0},
+                        {RowKind::push, 1e-3, 2.0, 0.5, 0.0},
+                        {RowKind::push, -1e-3, 2.0, 0.5, 2.0},
+                        {RowKind::push, 0.0, open, 0.5, 0.5},
+                        {RowKind::bilateral, 0.0, 0.0, 0.5, 0.5}})
+    for (Method method : {Method::automatic, Method::hybrid, Method::pgs, Method::active_set,
+                          Method::interior_point}) {
+      Problem problem = random_problem(3, 20, 1);
+      problem.W.row(0).setZero();
+      problem.W.col(0).setZero();
+      problem.kind[0] = c.kind;
+      problem.g[0] = c.gap;
+      problem.bound[0] = c.bound;
+      problem.start[0] = c.start;
+      const Multipliers answer =
+          solve(problem, {.method = method, .tolerance = 1e-10, .max_iterations = 100000});
+      ASSERT_TRUE(answer.converged) << answer.why;
+      EXPECT_EQ(answer.lambda[0], c.lambda) << c.gap;
+      EXPECT_EQ(answer.delta[0], c.gap);
+    }
+}
+
+TEST(Solvers, AGapThatNothingCanCloseIsNotCalledMet)
+{
+  const double open = std::numeric_limits<double>::infinity();
+  for (RowKind kind : {RowKind::bilateral, RowKind::push}) {
+    Problem problem = random_problem(3, 20, 1);
+    problem.W.row(4).setZero();
+    problem.W.col(4).setZero();
+    problem.kind[4] = kind;
+    problem.bound[4] = open;
+    problem.g[4] = -1e-3;
+    const Multipliers answer = solve(problem, {});
+    EXPECT_FALSE(answer.converged);
+    EXPECT_EQ(answer.immovable, 4);
+    EXPECT_DOUBLE_EQ(answer.residual, 1e-3);
+  }
+}
+
+// A friction row whose bound follows a normal one, both on a place that is held.
+TEST(Solvers, FrictionOfAHeldPlaceFollowsItsNormalForce)
 {
   Problem problem = random_problem(3, 20, 1);
-  problem.W.row(0).setZero();
-  problem.W.col(0).setZero();
+  for (int row : {0, 1}) {
+    problem.W.row(row).setZero();
+    problem.W.col(row).setZero();
+  }
+  problem.kind[0] = RowKind::push;
+  problem.bound[0] = 3.0;
+  problem.g[0] = -1e-4;
+  problem.kind[1] = RowKind::box;
+  problem.g[1] = 1e-4;
+  problem.normal.assign(9, -1);
+  problem.normal[1] = 0;
+  problem.friction = VecX::Zero(9);
+  problem.friction[1] = 0.5;
+  problem.bound[1] = 0.0;
   const Multipliers answer = solve(problem, {});
-  ASSERT_TRUE(answer.converged);
-  EXPECT_EQ(answer.lambda[0], 0.0);
-  EXPECT_EQ(answer.delta[0], problem.g[0]);
-  EXPECT_EQ(answer.rank, 8);
+  ASSERT_TRUE(answer.converged) << answer.why;
+  EXPECT_EQ(answer.lambda[0], 3.0);
+  EXPECT_EQ(answer.lambda[1], -1.5);
 }
 
 TEST(Solvers, ContradictoryRowsAreNotCalledConverged)

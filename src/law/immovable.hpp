@@ -1,0 +1,15 @@
+#pragma once
+
+#include "law/problem.hpp"
+
+namespace trocar::law {
+
+/// W_ii and softness of every row [m/N], exactly 0 where nothing can move the row: all its dofs are
+/// prescribed, its gap is what it is.
+VecX mobility(const Problem& problem);
+
+/// Gives rows without mobility the multipliers that their gaps ask for, and says in `result` where
+/// a gap breaks the law of such a row. `tolerance`: of gaps [m].
+void settle_immovable(const Problem& problem, const VecX& w, double tolerance, Multipliers& result);
+
+}  // namespace trocar::law
