@@ -14,13 +14,14 @@ std::optional<Span> clip_line(const std::array<core::Vec3, 4>& corner, const cor
   const Eigen::Vector4d at_P = mesh::barycentric(corner, P);
   const Eigen::Vector4d at_Q = mesh::barycentric(corner, Q);
   const Eigen::Vector4d slope = at_Q - at_P;
-  const double edges = (Q - P).norm() / mesh::longest_edge(corner);
+  constexpr double in_plane = 1e-6, parallel = 1e-15;
   Span span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int a = 0; a < 4; ++a) {
-    // Relative to the line's length in edges: how steeply it leaves the face's plane. Up to 1e-6
-    // of an edge outside counts as inside.
-    if (std::abs(slope[a]) <= 1e-9 * edges) {
-      if (at_P[a] < -1e-6) return std::nullopt;
+    // A segment that stays within 1e-6 of a height from the face lies in it, whatever rounding says
+    // of where it would cross. So does one all of whose line is that far on one side.
+    const bool in_face = std::abs(at_P[a]) <= in_plane && std::abs(at_Q[a]) <= in_plane;
+    if (in_face || std::abs(slope[a]) <= parallel) {
+      if (at_P[a] < -in_plane) return std::nullopt;
       continue;
     }
     const double t = -at_P[a] / slope[a];

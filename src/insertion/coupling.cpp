@@ -146,6 +146,34 @@ PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, co
   return mine;
 }
 
+/// A needle that one point alone holds could turn about it, until its tip meets the next place for
+/// one. Until then the last half edge that the tip has passed holds it as well: a material
+/// place, that does not go along with the tip. Returns the first of two rows; -1: none is passed.
+int Insertion::add_lever_rows(const InsertionState& state, const needle::Shaft& shaft,
+                              const Deformed& tissue, int body, constraint::Set& set) const
+{
+  const Site& held = state.path.sites[static_cast<std::size_t>(state.points.front().site)];
+  const double half = 0.5 * local_edge(*mesh_, held.tet);
+  const double passed = std::floor((state.tip_arc - held.arc) / half + relative_tolerance);
+  if (passed < 1.0) return -1;
+  const std::optional<Site> tip = site_at(state.path, *mesh_, held.arc + passed * half);
+  if (!tip || tip->arc - held.arc < 0.5 * half) return -1;  // the way is mostly through a void
+  const Vec3 p = tissue.position(tip->anchor);
+  const needle::ShaftPoint on_shaft = needle::project(shaft, p);
+  constraint::Row row;
+  row.anchor = tip->anchor;
+  row.body = body;
+  row.point = set.size();
+  row.softness = radius_softness(*tip, body, 0.5 * (tip->arc - held.arc)).lateral;
+  for (const Vec3& direction : {on_shaft.normal_1, on_shaft.normal_2}) {
+    row.direction = direction;
+    row.gap = direction.dot(p - on_shaft.x);
+    row.lever = needle::lever(shaft, on_shaft.s, direction);
+    set.add(row);
+  }
+  return set.size() - 2;
+}
+
 CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaft& shaft,
                                  const Deformed& tissue, int body, double h,
                                  constraint::Set& set) const
@@ -162,6 +190,8 @@ CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaf
                                          body, h, set));
     if (lateral[k]) held = 0.0;
   }
+  if (std::count(lateral.begin(), lateral.end(), true) == 1)
+    rows.lever = add_lever_rows(state, shaft, tissue, body, set);
   if (state.tip.pressed)
     rows.tip = add_tip_rows(state.tip, state.phase == Phase::contact, resistance(state),
                             settings_.tip.friction, shaft, tissue, body, set);

@@ -75,30 +75,37 @@ std::optional<Vec3> Deformed::reference_place(const Vec3& x, const Vec3& guess) 
   return search(candidates(x, x));
 }
 
-/// Where the segment P Q goes through the face of a quadratic tet by which it goes into its
-/// corners' tet at `t`, `stretch` long: the zero of that coordinate along it, by the secant; t
-/// itself when there is none near.
-double Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t,
-                                     double stretch) const
+/// Where the segment P Q goes into a quadratic tet whose corners' tet it goes into at `t`, over
+/// `stretch` of it: the zero of that face's coordinate along it, by the secant. Through an edge it
+/// may be either of two faces; one that the segment lies in is none. Nothing where there is no zero
+/// near.
+std::optional<double> Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t,
+                                                    double stretch) const
 {
-  const mesh::TetPositions x = positions_now(tet);
-  Eigen::Index face = 0;
-  mesh::barycentric(corners_now(tet), P + t * (Q - P)).cwiseAbs().minCoeff(&face);
-  const auto beyond = [&](double s) -> double {
-    return mesh::local_coordinates(x, P + s * (Q - P))[face];
-  };
+  constexpr double on_face = 1e-6;
   constexpr int most = 10;
-  double before = t, after = t + 1e-3 * stretch;
-  double at_before = beyond(before), at_after = beyond(after);
-  for (int k = 0; k < most && std::abs(at_before) > 1e-12 && at_after != at_before; ++k) {
-    const double next = before - at_before * (after - before) / (at_after - at_before);
-    after = before;
-    at_after = at_before;
-    before = next;
-    at_before = beyond(before);
+  const mesh::TetPositions x = positions_now(tet);
+  const Eigen::Vector4d begin = mesh::barycentric(corners_now(tet), P + t * (Q - P));
+  const Eigen::Vector4d end = mesh::barycentric(corners_now(tet), P + (t + stretch) * (Q - P));
+  std::optional<double> first;
+  for (Eigen::Index face = 0; face < 4; ++face) {
+    if (std::abs(begin[face]) > on_face || std::abs(end[face]) <= on_face) continue;
+    const auto beyond = [&](double s) -> double {
+      return mesh::local_coordinates(x, P + s * (Q - P))[face];
+    };
+    double before = t, after = t + 1e-3 * stretch;
+    double at_before = beyond(before), at_after = beyond(after);
+    for (int k = 0; k < most && std::abs(at_before) > 1e-12 && at_after != at_before; ++k) {
+      const double next = before - at_before * (after - before) / (at_after - at_before);
+      after = before;
+      at_after = at_before;
+      before = next;
+      at_before = beyond(before);
+    }
+    if (std::abs(at_before) > 1e-9 || std::abs(before - t) > stretch) continue;
+    if (!first || before < *first) first = before;
   }
-  const bool found = std::abs(at_before) <= 1e-9 && std::abs(before - t) <= stretch;
-  return found ? before : t;
+  return first;
 }
 
 Vec3 Deformed::reference_place_continued(const Vec3& x, int tet) const
@@ -106,13 +113,30 @@ Vec3 Deformed::reference_place_continued(const Vec3& x, int tet) const
   return pull_back(tet, x);
 }
 
-std::optional<Vec3> Deformed::entry(const Vec3& P, const Vec3& Q) const
+/// Where a way through the tissue begins. Through an edge or a corner it begins in many tets at
+/// once, and rounding must not choose among them: on curved faces it is the first place, and in
+/// the tet that comes first in the mesh.
+Deformed::Entry Deformed::entry_of(std::vector<Stretch> starts, const Vec3& P, const Vec3& Q) const
 {
-  struct Stretch
-  {
-    double low, high;
-    int tet;
-  };
+  constexpr double same = 1e-9;
+  std::sort(starts.begin(), starts.end(),
+            [](const auto& a, const auto& b) { return a.tet < b.tet; });
+  double t = starts.front().low;
+  int tet = starts.front().tet;
+  bool curved = false;
+  for (const Stretch& start : starts) {
+    if (!mesh_->quadratic() || !(start.low > 0.0)) break;
+    const auto at = through_curved_face(start.tet, P, Q, start.low, start.high - start.low);
+    if (!at || (curved && *at >= t - same)) continue;
+    t = *at;
+    tet = start.tet;
+    curved = true;
+  }
+  return {pull_back(tet, P + std::max(t, 0.0) * (Q - P)), tet};
+}
+
+std::vector<Deformed::Entry> Deformed::entries(const Vec3& P, const Vec3& Q) const
+{
   std::vector<Stretch> stretches;
   for (int tet : candidates(P.cwiseMin(Q), P.cwiseMax(Q))) {
     const auto span = clip_line(corners_now(tet), P, Q);
@@ -120,25 +144,25 @@ std::optional<Vec3> Deformed::entry(const Vec3& P, const Vec3& Q) const
       stretches.push_back({span->low, span->high, tet});
   }
   std::sort(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
-    return a.low != b.low ? a.low > b.low : a.tet < b.tet;
+    return a.low != b.low ? a.low < b.low : a.tet < b.tet;
   });
-  // Walk back from Q through touching stretches: the last one reached begins at the surface.
-  double reached = 1.0;
-  const Stretch* first = nullptr;
+  // Stretches that touch are one way through the tissue; it begins at the surface.
   constexpr double touch = 1e-6;
-  for (const Stretch& stretch : stretches) {
-    if (stretch.high < reached - touch) continue;
-    if (stretch.low < reached) {
-      reached = stretch.low;
-      first = &stretch;
+  std::vector<Entry> found;
+  for (std::size_t i = 0; i < stretches.size();) {
+    const double low = stretches[i].low;
+    std::vector<Stretch> starts;
+    Stretch last = stretches[i];
+    for (; i < stretches.size() && stretches[i].low <= last.high + touch; ++i) {
+      if (stretches[i].low <= low + touch) starts.push_back(stretches[i]);
+      if (stretches[i].high > last.high + touch ||
+          (stretches[i].high > last.high - touch && stretches[i].tet < last.tet))
+        last = stretches[i];
     }
+    found.push_back(entry_of(std::move(starts), P, Q));
+    found.back().last_tet = last.tet;
   }
-  if (!first) return std::nullopt;
-  if (mesh_->quadratic() && first->low > 0.0) {
-    const double t = through_curved_face(first->tet, P, Q, first->low, first->high - first->low);
-    return pull_back(first->tet, P + std::max(t, 0.0) * (Q - P));
-  }
-  return pull_back(first->tet, P + std::max(first->low, 0.0) * (Q - P));
+  return found;
 }
 
 bool Deformed::meets(const Vec3& P, const Vec3& Q) const

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "fem/space.hpp"
 #include "insertion/path.hpp"
@@ -26,9 +27,15 @@ class Deformed
   /// As above with the map of one tet continued beyond its faces: for a tip that has left.
   Vec3 reference_place_continued(const Vec3& x, int tet) const;
 
-  /// Reference place where the world segment from outside P to inside Q enters the stretch of
-  /// tissue that holds Q; nothing when Q is outside.
-  std::optional<Vec3> entry(const Vec3& P, const Vec3& Q) const;
+  /// Where a segment goes into the tissue: reference place there, and the last tet it passes before
+  /// it is out again, or ends.
+  struct Entry
+  {
+    Vec3 X;
+    int last_tet;
+  };
+  /// The places where the world segment from P, outside, to Q goes into the tissue, in order.
+  std::vector<Entry> entries(const Vec3& P, const Vec3& Q) const;
 
   /// True when the world segment P Q meets the tissue at all.
   bool meets(const Vec3& P, const Vec3& Q) const;
@@ -36,7 +43,15 @@ class Deformed
  private:
   std::array<Vec3, 4> corners_now(int tet) const;
   mesh::TetPositions positions_now(int tet) const;
-  double through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t, double stretch) const;
+  /// Part of a segment in one tet.
+  struct Stretch
+  {
+    double low, high;
+    int tet;
+  };
+  std::optional<double> through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t,
+                                            double stretch) const;
+  Entry entry_of(std::vector<Stretch> starts, const Vec3& P, const Vec3& Q) const;
   std::vector<int> candidates(const Vec3& low, const Vec3& high) const;
   Vec3 pull_back(int tet, const Vec3& x) const;
 

@@ -73,7 +73,7 @@ InsertionState Insertion::advance(const InsertionState& old, const needle::Shaft
   }
   // A tip outside the tissue in front of the entry has left the channel, whatever the map says.
   if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
-  press(next, arc, tissue);
+  press(next, arc, predicted, tissue);
   if (next.tip.pressed) arc = next.path.length();
   next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;
   drop_points_ahead(next, arc);
@@ -103,22 +103,27 @@ bool Insertion::astray(const InsertionState& state, const needle::Shaft& shaft,
 InsertionState Insertion::enter(const InsertionState& old, const needle::Shaft& predicted,
                                 const Deformed& tissue) const
 {
-  const auto entry = tissue.entry(predicted.x.front(), predicted.tip());
-  const auto X = entry ? tissue.reference_place(predicted.tip(), *entry) : std::nullopt;
-  if (!X) return old;
+  // The first entry: a tip may have gone through a thin wall and on within the step.
+  const auto entries = tissue.entries(predicted.x.front(), predicted.tip());
+  if (entries.empty()) return old;
+  const Vec3& entry = entries.front().X;
   InsertionState next;
   next.tip.punctures = old.tip.punctures;
   next.path.first_id = old.path.first_id + static_cast<int>(old.path.sites.size());
-  if (border(-1, locator_->tet_at(*entry), *entry) > 0.0) {
-    touch_surface(next, *entry);
-    next.tip.offset = tissue.position(next.tip.hold) - tissue.place(*entry, next.tip.tet);
+  if (border(-1, locator_->tet_at(entry), entry) > 0.0) {
+    touch_surface(next, entry, predicted);
+    next.tip.offset = tissue.position(next.tip.hold) - tissue.place(entry, next.tip.tet);
     return next;
   }
-  grow(next.path, *entry, *mesh_, *locator_, settings_.placement);
-  grow_to(next, *X);
+  const auto inside = tissue.reference_place(predicted.tip(), entry);
+  const Vec3 X = inside
+                     ? *inside
+                     : tissue.reference_place_continued(predicted.tip(), entries.front().last_tet);
+  grow(next.path, entry, *mesh_, *locator_, settings_.placement);
+  grow_to(next, X);
   if (first_tet(next.path) < 0) return old;
   next.phase = Phase::inserted;
-  press(next, next.path.length(), tissue);
+  press(next, next.path.length(), predicted, tissue);
   add_points_behind(next, next.path.length(), predicted.length);
   return next;
 }

@@ -80,6 +80,7 @@ struct PointRows
 struct CouplingRows
 {
   std::vector<PointRows> points;
+  int lever = -1;  ///< first of two lateral rows at a tip that one point alone would let turn
   TipRows tip;
 };
 
@@ -143,12 +144,15 @@ class Insertion
   InsertionState enter(const InsertionState& old, const needle::Shaft& predicted,
                        const Deformed& tissue) const;
   double border(int from, int to, const Vec3& X) const;
-  void touch_surface(InsertionState& state, const Vec3& X) const;
+  void touch_surface(InsertionState& state, const Vec3& X, const needle::Shaft& shaft) const;
   void leave_surface(InsertionState& state) const;
   bool stand(InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
   void grow_to(InsertionState& state, const Vec3& X) const;
   double resistance(const InsertionState& state) const;
-  void press(InsertionState& state, double arc, const Deformed& tissue) const;
+  void press(InsertionState& state, double arc, const needle::Shaft& shaft,
+             const Deformed& tissue) const;
+  int add_lever_rows(const InsertionState& state, const needle::Shaft& shaft,
+                     const Deformed& tissue, int body, constraint::Set& set) const;
   Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue) const;
   Friction friction_of(const InsertionState& state, const core::MatX& tributary,
                        std::size_t point) const;

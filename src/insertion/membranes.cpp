@@ -30,10 +30,13 @@ double Membranes::of_surface(int tet, const Vec3& X) const
 {
   if (tet < 0) return -2.0;
   const mesh::Tet& nodes = mesh_->tets[static_cast<std::size_t>(tet)];
-  const Eigen::Vector4d weight = mesh::local_coordinates(mesh::positions(*mesh_, tet), X);
+  // Paths cross the chords of curved faces; a tip enters where the face itself is.
+  const Eigen::Vector4d at_chord = mesh::barycentric(mesh::corners(*mesh_, tet), X);
+  const Eigen::Vector4d at_face = mesh::local_coordinates(mesh::positions(*mesh_, tet), X);
+  const Eigen::Vector4d weight = at_chord.cwiseAbs().cwiseMin(at_face.cwiseAbs());
   double found = -2.0;
   for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-    if (std::abs(weight[static_cast<Eigen::Index>(opposite)]) > 1e-5) continue;
+    if (weight[static_cast<Eigen::Index>(opposite)] > 1e-5) continue;
     mesh::Face face{nodes[(opposite + 1) % 4], nodes[(opposite + 2) % 4],
                     nodes[(opposite + 3) % 4]};
     std::sort(face.begin(), face.end());

@@ -82,7 +82,7 @@ void add_pieces(Path& path, const std::vector<Passage>& passages,
   }
 }
 
-void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
+Site site_in(const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
 {
   const mesh::TetNodes nodes = mesh::nodes_of(mesh, tet);
   Site site{arc, tet, {{nodes.begin(), nodes.end()}, {}}};
@@ -90,7 +90,12 @@ void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec
   for (int a = 0; a < 4; ++a)
     if (at[a] < relative_tolerance) at[a] = 0.0;  // on a face: the nodes off it are free
   site.anchor.weight = mesh::node_weights(mesh, at / at.sum());
-  path.sites.push_back(site);
+  return site;
+}
+
+void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
+{
+  path.sites.push_back(site_in(mesh, tet, arc, X));
 }
 
 /// Where sites may stand: crossings, and in quadratic tets the middles of the pieces, on [0, 1].
@@ -171,6 +176,20 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
     const int tet = lowest_tet_at(tets, t, 1.0);
     if (tet >= 0) add_site(path, mesh, tet, static_cast<double>(k) * d, P + t * (X - P));
   }
+}
+
+std::optional<Site> site_at(const Path& path, const mesh::Mesh& mesh, double arc)
+{
+  const Piece* in = nullptr;
+  for (const Piece& piece : path.pieces)
+    if (piece.tet >= 0 && piece.begin < arc) in = &piece;
+  if (!in) return std::nullopt;
+  const double here = std::min(arc, in->end);
+  std::size_t i = 1;
+  while (i + 1 < path.arc.size() && path.arc[i] < here) ++i;
+  const double part = (here - path.arc[i - 1]) / (path.arc[i] - path.arc[i - 1]);
+  const Vec3 X = path.vertex[i - 1] + part * (path.vertex[i] - path.vertex[i - 1]);
+  return site_in(mesh, in->tet, here, X);
 }
 
 double tissue_length(const Path& path, double arc)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "constraint/set.hpp"
@@ -56,6 +57,10 @@ struct Path
 /// up to the tolerance beyond X counts as reached. A path starts as its first vertex.
 void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator& locator,
           const PlacementSettings& settings);
+
+/// The material place of the path at `arc`, or where it last was in tissue before that; nothing
+/// when it never was.
+std::optional<Site> site_at(const Path& path, const mesh::Mesh& mesh, double arc);
 
 /// Length of the path up to `arc` that lies in tissue [m].
 double tissue_length(const Path& path, double arc);

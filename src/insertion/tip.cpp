@@ -10,7 +10,7 @@
 namespace trocar::insertion {
 namespace {
 
-/// One of each opposite pair of samples of the unit disc normal to e_z (`flat`) or unit ball.
+/// One of each opposite pair of samples of the unit disc normal to e_x (`flat`) or unit ball.
 std::vector<Vec3> half_samples(bool flat)
 {
   std::vector<Vec3> samples;
@@ -22,7 +22,7 @@ std::vector<Vec3> half_samples(bool flat)
       const double r = std::sqrt(1.0 - std::cbrt((1.0 - share) * (1.0 - share)));
       for (int spoke = 0; spoke < spokes; ++spoke) {
         const double angle = std::numbers::pi * (spoke + 0.5 * (ring % 2)) / spokes;
-        samples.emplace_back(r * std::cos(angle), r * std::sin(angle), 0.0);
+        samples.emplace_back(0.0, r * std::cos(angle), r * std::sin(angle));
       }
     }
     return samples;
@@ -38,9 +38,10 @@ std::vector<Vec3> half_samples(bool flat)
 
 }  // namespace
 
-constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& X,
-                               int tet, double radius, const Vec3* disc)
+constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator,
+                               const Support& support, const core::Mat3& frame, bool disc)
 {
+  const Vec3& X = support.X;
   std::map<int, double> weight;  // by node
   const auto add = [&](int in, const Vec3& place) {
     const mesh::NodeWeights share =
@@ -48,17 +49,15 @@ constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& loca
     Eigen::Index a = 0;
     for (int node : mesh::nodes_of(mesh, in)) weight[node] += share[a++];
   };
-  const core::Mat3 frame = disc ? core::frame_along(*disc) : core::Mat3::Identity();
-  for (const Vec3& s : half_samples(disc != nullptr)) {
-    // frame_along puts the normal first; the disc's samples have none of it.
-    const Vec3 arm = radius * (disc ? Vec3(s.x() * frame.col(1) + s.y() * frame.col(2)) : s);
+  for (const Vec3& s : half_samples(disc)) {
+    const Vec3 arm = support.radius * (frame * s);
     const int one = locator.tet_at(X + arm);
     const int other = locator.tet_at(X - arm);
     if (one < 0 || other < 0) continue;
     add(one, X + arm);
     add(other, X - arm);
   }
-  add(tet, X);
+  add(support.tet, X);
   double sum = 0.0;
   for (const auto& [node, share] : weight) sum += share;
   constraint::Anchor anchor;

@@ -26,6 +26,7 @@ struct TipState
   double pierced_force = 0.0;  ///< and its threshold [N]
   int tet = -1;                ///< holds the place it presses on
   constraint::Anchor hold;     ///< support of that place
+  double radius = 0.0;         ///< of the support: that asked for, or the local edge there [m]
   Vec3 offset = Vec3::Zero();  ///< from the tip to the support's mean when the gap is closed [m]
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
   int punctures = 0;           ///< borders pierced so far
@@ -42,11 +43,20 @@ struct TipRows
 /// What came of the tip's rows.
 enum class TipOutcome { holds, yields, slides, apart };
 
-/// A mean over the tissue within `radius` of the reference place X: uniform in the ball, or
-/// (`disc`) with Hertz's pressure sqrt(1 - r²/R²) on the disc normal to it. Sample places come in
-/// opposite pairs that are dropped together where one lies outside, so that the mean place stays X.
-constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& X,
-                               int tet, double radius, const Vec3* disc);
+/// Reference place that carries a tip, the tet that holds it, and how far around it.
+struct Support
+{
+  Vec3 X;
+  int tet;
+  double radius;  ///< [m]
+};
+
+/// A mean over the tissue within the support's radius: uniform in the ball, or (`disc`) with
+/// Hertz's pressure sqrt(1 - r²/R²) on the disc normal to the frame's first axis. Sample places lie
+/// along the frame; they come in opposite pairs that are dropped together where one is outside, so
+/// that the mean place stays X.
+constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator,
+                               const Support& support, const core::Mat3& frame, bool disc);
 
 /// Rows of a pressed tip: axial push 0 <= λ <= limit on δ = m·(tissue - tip), with m the tangent
 /// plus the bevel's lateral part, and on a surface two lateral rows with Coulomb's bound.

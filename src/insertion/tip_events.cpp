@@ -21,6 +21,26 @@ Vec3 face_normal(const mesh::Mesh& mesh, int tet, const Vec3& X)
   return normal.dot(at(0) - at(1)) > 0.0 ? Vec3(-normal) : normal;
 }
 
+core::Mat3 frame_of(const needle::ShaftPoint& end)
+{
+  core::Mat3 frame;
+  frame << end.tangent, end.normal_1, end.normal_2;
+  return frame;
+}
+
+/// The normal first, then what the needle's own normals have across it: the frame turns with body
+/// and needle.
+core::Mat3 disc_frame(const Vec3& normal, const needle::ShaftPoint& end)
+{
+  const auto across = [&](const Vec3& d) -> Vec3 { return d - normal.dot(d) * normal; };
+  const Vec3 one = across(end.normal_1), other = across(end.normal_2);
+  core::Mat3 frame;
+  frame.col(0) = normal;
+  frame.col(1) = (one.norm() > 0.1 ? one : other).normalized();
+  frame.col(2) = normal.cross(frame.col(1));
+  return frame;
+}
+
 }  // namespace
 
 /// Force it takes to go at X from one tet into another (-1: none) [N]: a membrane's threshold, and
@@ -37,7 +57,8 @@ double Insertion::border(int from, int to, const Vec3& X) const
 }
 
 /// The tip stands on the surface at X, which is the path from now on.
-void Insertion::touch_surface(InsertionState& state, const Vec3& X) const
+void Insertion::touch_surface(InsertionState& state, const Vec3& X,
+                              const needle::Shaft& shaft) const
 {
   const int tet = locator_->tet_at(X);
   const double edge = local_edge(*mesh_, tet);
@@ -51,8 +72,9 @@ void Insertion::touch_surface(InsertionState& state, const Vec3& X) const
   state.tip.wall = true;
   state.tip.threshold = border(-1, tet, X);
   state.tip.tet = tet;
-  state.tip.hold =
-      tip_support(*mesh_, *locator_, X, tet, std::max(settings_.tip.radius, edge), &normal);
+  state.tip.radius = std::max(settings_.tip.radius, edge);
+  state.tip.hold = tip_support(*mesh_, *locator_, {X, tet, state.tip.radius},
+                               disc_frame(normal, needle::shaft_at(shaft, shaft.length)), true);
 }
 
 /// Grows the path towards X, but not through a border that resists: there it ends, and that
@@ -98,7 +120,8 @@ double Insertion::resistance(const InsertionState& state) const
 
 /// A tip that comes to the end of its path where something resists is pressed from then on, until
 /// it comes apart. Its gap counts from that place.
-void Insertion::press(InsertionState& state, double arc, const Deformed& tissue) const
+void Insertion::press(InsertionState& state, double arc, const needle::Shaft& shaft,
+                      const Deformed& tissue) const
 {
   TipState& tip = state.tip;
   const bool was_pressed = tip.pressed;
@@ -109,10 +132,12 @@ void Insertion::press(InsertionState& state, double arc, const Deformed& tissue)
   tip.pressed = was_pressed || arc >= state.path.length() - tolerance;
   if (!tip.pressed || was_pressed) return;
   const Vec3& X = state.path.vertex.back();
-  const double radius = std::max(settings_.tip.radius, local_edge(*mesh_, tet));
-  const Vec3 normal = face_normal(*mesh_, tet, X);
+  const needle::ShaftPoint end = needle::shaft_at(shaft, shaft.length);
+  tip.radius = std::max(settings_.tip.radius, local_edge(*mesh_, tet));
   tip.tet = tet;
-  tip.hold = tip_support(*mesh_, *locator_, X, tet, radius, tip.wall ? &normal : nullptr);
+  tip.hold = tip_support(*mesh_, *locator_, {X, tet, tip.radius},
+                         tip.wall ? disc_frame(face_normal(*mesh_, tet, X), end) : frame_of(end),
+                         tip.wall);
   tip.offset = tissue.position(tip.hold) - tissue.place(X, tet);
 }
 
@@ -137,9 +162,15 @@ bool Insertion::stand(InsertionState& state, const needle::Shaft& shaft,
   const double edge = local_edge(*mesh_, state.tip.tet);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
   const Vec3 ahead = shaft.tip() + lead(state, shaft, tissue) + edge * tangent;
-  const auto entry = tissue.entry(shaft.x.front(), ahead);
-  if (entry && locator_->tet_at(*entry) >= 0) touch_surface(state, *entry);
-  if (!entry || state.tip.threshold <= 0.0) leave_surface(state);
+  const Vec3 stood = state.path.vertex.back();
+  const auto entries = tissue.entries(shaft.x.front(), ahead);
+  const auto nearest =
+      std::min_element(entries.begin(), entries.end(), [&](const auto& a, const auto& b) {
+        return (a.X - stood).squaredNorm() < (b.X - stood).squaredNorm();
+      });
+  const bool there = nearest != entries.end();
+  if (there && locator_->tet_at(nearest->X) >= 0) touch_surface(state, nearest->X, shaft);
+  if (!there || state.tip.threshold <= 0.0) leave_surface(state);
   return state.tip.pressed;
 }
 
@@ -182,10 +213,15 @@ void Insertion::settle(InsertionState& state, const CouplingReport& report,
   }
   grow_to(state, X);
   state.phase = Phase::inserted;
-  press(state, state.path.length(), tissue);
-  // Where the tissue gave way to the tip it is closed on it, in the bevel's direction as well.
-  if (state.tip.pressed && state.tip.threshold <= 0.0)
+  press(state, state.path.length(), shaft, tissue);
+  // Where the tissue gave way to the tip it is closed on it, in the bevel's direction as well. A
+  // border on its way the tip is beyond by the rest of its advance: to that the next step opens.
+  if (state.tip.pressed) {
     state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
+    const Vec3 end = tissue.place(state.path.vertex.back(), state.tip.tet);
+    if (state.tip.threshold > 0.0)
+      state.tip.offset += std::max(tangent.dot(tip - end), 0.0) * tangent;
+  }
   state.tip_arc = state.path.length();
   const std::size_t known = state.points.size();
   add_points_behind(state, state.path.length(), shaft.length);
