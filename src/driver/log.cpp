@@ -87,6 +87,7 @@ void Log::cavities(const cavity::Cavities& cavities) const
 void Log::step(int number, const State& state, const StepReport& report)
 {
   if (!speaks()) return;
+  warn(state, report);
   energy_ = state.energy;
   for (const NeedleReport& needle : report.needles) {
     friction_ -= needle.coupling.friction_work;
@@ -113,6 +114,45 @@ void Log::step(int number, const State& state, const StepReport& report)
   else
     std::printf("%8s\n", "-");
   std::fflush(stdout);
+}
+
+/// Of what is taken but should not be: elements that linear tissue was allowed to fold, and energy
+/// out of nothing.
+void Log::warn(const State& state, const StepReport& report)
+{
+  const bool folded = report.folded >= 0;
+  if (folded && !folded_) {
+    const mesh::Mesh& mesh = simulation_->scenario().mesh;
+    std::printf("warning: at t = %.6g s linear tissue has an element inside out: tet %lld\n",
+                state.t, mesh.elem_tag[static_cast<std::size_t>(report.folded)]);
+  }
+  folded_ = folded;
+  warn_of_supports(state);
+  if (!simulation_->scenario().output.energy || simulation_->scenario().time.second_order) return;
+  constexpr double part = 1e-6, rounded = 1e-12;
+  turned_over_ += std::abs(state.energy.supplied - energy_.supplied);
+  const double gain = energy_.rest() - state.energy.rest();
+  const double stored = state.energy.elastic + state.energy.kinetic;
+  const bool gained = state.t > 0.0 && gain > part * turned_over_ + rounded * stored;
+  if (gained && !gained_)
+    std::printf("warning: at t = %.6g s the step gains energy: %.3g J of %.3g J supplied so far\n",
+                state.t, gain, turned_over_);
+  gained_ = gained;
+}
+
+void Log::warn_of_supports(const State& state)
+{
+  const double asked = simulation_->scenario().insertion.tip.radius;
+  widened_.resize(state.insertions.size(), false);
+  for (std::size_t i = 0; i < state.insertions.size(); ++i) {
+    const insertion::TipState& tip = state.insertions[i].tip;
+    if (widened_[i] || !(asked > 0.0) || !tip.pressed || tip.radius <= asked) continue;
+    widened_[i] = true;
+    std::printf(
+        "warning: the tip of needle '%s' is carried by the tissue within %.3g m, the local "
+        "edge of the mesh, not within -insertion_tip_radius %.3g m\n",
+        simulation_->scenario().needles[i].name.c_str(), tip.radius, asked);
+  }
 }
 
 void Log::note(const std::string& line) const

@@ -22,6 +22,8 @@ class Log
 
  private:
   void cavities(const cavity::Cavities& cavities) const;
+  void warn(const State& state, const StepReport& report);
+  void warn_of_supports(const State& state);
   bool speaks() const;
 
   const Simulation* simulation_;
@@ -29,6 +31,9 @@ class Log
   int lines_ = 0;
   EnergyAccount energy_;                   ///< of the last step
   double friction_ = 0.0, cutting_ = 0.0;  ///< dissipated so far [J]
+  double turned_over_ = 0.0;               ///< energy supplied so far, there and back [J]
+  bool folded_ = false, gained_ = false;   ///< in the last step: an event is told once
+  std::vector<bool> widened_;              ///< by needle: told that its support is wider than asked
 };
 
 }  // namespace trocar::driver

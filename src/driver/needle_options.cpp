@@ -71,6 +71,9 @@ void check_needle_names(const std::vector<std::string>& names)
                                  "' begins another option of the needle's area");
 }
 
+/// A base on the surface is outside: what counts is the shaft this part of its length behind it.
+constexpr double on_surface = 1e-6;
+
 /// Along a trajectory the base must stay outside and the tip must meet the tissue at least once.
 void check_trajectory_places(const needle::BaseMotion& motion, const insertion::Deformed& tissue,
                              const std::string& who)
@@ -80,7 +83,10 @@ void check_trajectory_places(const needle::BaseMotion& motion, const insertion::
   needle::Pose last = motion.at(rows.front().front());
   for (const auto& row : rows) {
     const needle::Pose pose = motion.at(row.front());
-    if (tissue.meets(last.x, pose.x + 1e-9 * motion.length * pose.R.col(0)))
+    const auto base = [&](const needle::Pose& at) -> core::Vec3 {
+      return at.x - on_surface * motion.length * at.R.col(0);
+    };
+    if (tissue.meets(base(last), base(pose) + 1e-9 * motion.length * pose.R.col(0)))
       throw core::data_error(who + "its base would enter the tissue before t = " +
                              core::shown(row.front()) + " s of " + motion.trajectory->file);
     meets = meets || tissue.meets(pose.x, pose.x + motion.length * pose.R.col(0));
@@ -99,15 +105,13 @@ void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh
   const fem::GlobalField undeformed{core::VecX::Zero(3 * mesh.node_count())};
   const insertion::Deformed tissue(mesh, locator, undeformed);
   const std::string who = "needle '" + settings.name + "': ";
-  const auto base_outside = [&](const core::Vec3& x, const std::string& when) {
-    if (locator.tet_at(x) >= 0)
-      throw core::data_error(who + "its base would enter the tissue " + when);
-  };
   if (std::max(motion.depth, motion.inserted) > motion.length)
     throw core::data_error(who + "its base would enter the tissue: depth " +
                            core::shown(std::max(motion.depth, motion.inserted)) +
                            " m is more than its length");
-  base_outside(motion.at(0.0).x, "at the start");
+  const needle::Pose start = motion.at(0.0);
+  if (locator.tet_at(start.x - on_surface * motion.length * start.R.col(0)) >= 0)
+    throw core::data_error(who + "its base would enter the tissue at the start");
   const core::Vec3 before_entry = motion.entry - 1e-3 * motion.length * motion.direction;
   if (motion.inserted < motion.length && tissue.meets(motion.start().x, before_entry))
     throw core::data_error(who +

@@ -1,20 +1,101 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "driver/simulation.hpp"
 
-// Increments of Newton's method that are too long.
+// When a step has been linearised often enough, and what leads on when it has not.
 namespace trocar::driver {
 
-/// ‖r‖ over the forces it is the rest of, with these forces on the tissue.
-double Simulation::unbalanced(const State& past, const fem::OwnedField& u,
-                              const core::TimeStep& now, const fem::OwnedField& forces) const
+/// Static equilibria and steps with pressures that follow the walls are iterated until everything
+/// is balanced. A dynamic one is as many times as it was told to, or as it takes.
+Simulation::Effort Simulation::effort_of(const core::TimeStep& now) const
 {
-  double scale = 0.0;
-  fem::OwnedField r = tissue_.residual(past.tissue, u, now, scale);
-  fem::OwnedField more = forces;
-  tissue_.fixed().clear(more);
-  r.value += more.value;
-  return space_.norm(r) / (scale + space_.norm(more));
+  constexpr int most = 50;
+  constexpr double automatic_first = 1e-3, automatic = 1e-6;
+  const bool follows = cavities_ && cavities_->follows();
+  const double tolerance = scenario_.tissue.newton_tolerance;
+  const bool bends = scenario_.tissue.model != tissue::Model::linear;
+  if (now.is_static || follows) return {most, 0.0, tolerance, true};
+  const int told = scenario_.time.newton_max;
+  if (told > 1) return {told, 0.0, tolerance, true};
+  const double any = std::numeric_limits<double>::infinity();
+  if (told == 1 || !bends) return {1, any, any, bends};
+  return {most, automatic_first, automatic, true};
+}
+
+Simulation::Place Simulation::place_of(const State& past, const core::TimeStep& now,
+                                       const Pass& pass, const cavity::Shape& walls,
+                                       const State& next)
+{
+  Place here;
+  here.forces = all_forces(pass, next, walls, now);
+  if (pass.folded < 0) here.balance = tissue_.balance(past.tissue, next.tissue.u, now, here.forces);
+  return here;
+}
+
+/// Sets what the next linearisation is led by, `residual`.
+bool Simulation::enough(const State& past, const State& next, const cavity::Shape& walls,
+                        const core::TimeStep& now, const Pass& pass, const tissue::Balance& balance,
+                        const Iterate& before, double& residual, StepReport& report) const
+{
+  const Effort effort = effort_of(now);
+  report.unbalanced = balance.worst;
+  if (report.linearisations == 1 && balance.worst <= effort.first && effort.first > 0.0)
+    return true;
+  double increment = 0.0;
+  for (std::size_t i = 0; i < needles_.size(); ++i) {
+    // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
+    // are below round-off.
+    const needle::Linearised again = needles_[i].linearise(past.needles[i], next.needles[i], now);
+    const core::VecX lever =
+        pass.lambda.lambda.size() > 0 ? pass.levers[i] : core::VecX::Zero(again.r.size()).eval();
+    increment = std::max(increment, needles_[i].relative_increment(again, lever));
+  }
+  residual = std::max(balance.norm, increment);
+  if (!(std::max(balance.worst, increment) <= effort.later)) return false;
+  // Sums over stiff parts are rounded: as long as it helps, the residual is refined.
+  if (now.is_static && !balance.carries(effort.later) && balance.lost < 0.5 * before.lost)
+    return false;
+  if (cavities_ && cavities_->exact() && !cavities_->closed(next.cavities, walls, now))
+    return false;
+  return gaps_closed(now, next, pass);
+}
+
+// The rows turn with the shaft: the gaps of the new geometry must be closed as well.
+bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const
+{
+  const Rows again = coupling_rows(now, next);
+  for (int i = 0; i < again.set.size(); ++i) {
+    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+    const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
+                      row.relative_softness == 0.0 && pass.mobility[i] > 0.0;
+    if (hard && std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, 1e-9)) return false;
+  }
+  return true;
+}
+
+/// From a linearisation that was not enough to the next one: its increment may be too long, and
+/// the tangent with held rotations lead on too slowly. False when an element stays folded.
+bool Simulation::lead_on(const State& past, const core::TimeStep& now, const Pass& pass,
+                         const Effort& effort, Place& here, Iterate& before, cavity::Shape& walls,
+                         State& next)
+{
+  constexpr double slow = 0.5;
+  constexpr int most_slow = 3;
+  const bool upright = pass.folded < 0;
+  double rest = upright ? here.balance.norm : before.unbalanced;
+  if (!upright || rest > slow * before.unbalanced) ++before.slow;
+  if (before.slow >= most_slow) tissue_.take_exact();
+  const bool overshoots = rest > std::max(before.unbalanced, effort.later);
+  if (!upright || overshoots) {
+    if (effort.most == 1) return false;
+    if (!shorten(past, now, upright, before, here.forces, walls, next, rest)) return false;
+  }
+  before.forces = std::move(here.forces);
+  before.unbalanced = rest;
+  before.lost = here.balance.lost;
+  return true;
 }
 
 // Half of the increment, a quarter, ...: the first on which no element is inside out and less is
@@ -24,7 +105,7 @@ double Simulation::unbalanced(const State& past, const fem::OwnedField& u,
 // turns elements inside out, or one increment after the other does.
 bool Simulation::shorten(const State& past, const core::TimeStep& now, bool upright,
                          Iterate& before, fem::OwnedField& forces, cavity::Shape& walls,
-                         State& next, double& unbalanced_part) const
+                         State& next, double& unbalanced_part)
 {
   constexpr int most_halvings = 4, most_turnovers = 4;
   before.turnovers = upright ? 0 : before.turnovers + 1;
@@ -35,11 +116,11 @@ bool Simulation::shorten(const State& past, const core::TimeStep& now, bool upri
   for (int halving = 0; halving < most_halvings; ++halving) {
     part *= 0.5;
     const fem::OwnedField u{before.u.value + part * (whole.value - before.u.value)};
-    if (!tissue_.possible(u)) continue;
+    if (tissue_.folded(u) >= 0) continue;
     const bool first = !std::isfinite(before.unbalanced);  // nothing to compare with
     fem::OwnedField along = all;
     if (!first) along.value = before.forces.value + part * (all.value - before.forces.value);
-    const double here = unbalanced(past, u, now, along);
+    const double here = tissue_.balance(past.tissue, u, now, along).norm;
     const bool descends = first || here < before.unbalanced;
     if (upright && !descends) continue;
     possible = true;

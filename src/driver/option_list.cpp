@@ -21,8 +21,15 @@ std::vector<OptionSpec> general_options()
       choice("time_scheme", "backward_euler", {"backward_euler", "bdf2"},
              "for inertia and damping; bdf2 is of order 2 in smooth motion, friction and flows of "
              "fluids stay of order 1"),
-      count("time_newton_max", "1", 1,
-            "linearisations per dynamic step; 1 is the papers' single one, more iterate to 1e-8"),
+      word(
+          "time_newton_max", "auto",
+          "linearisations per dynamic step: 1 is the papers' single one, more iterate to "
+          "newton_tolerance; auto: one where that leaves 1e-3 of the forces at every node, else as "
+          "many as it takes to 1e-6"),
+      {"newton_tolerance", OptionType::real, "1e-8", "1",
+       "part of the forces at a node that may stay unbalanced in static steps, in those told to be "
+       "iterated and where pressures follow the walls",
+       1e-12, 1e-2, false, false},
       vector("gravity", "0,0,0", "m/s^2", "acceleration of gravity"),
       choice("tissue_model", "corotational", {"linear", "corotational", "neo_hookean"},
              "tissue law"),
@@ -30,9 +37,12 @@ std::vector<OptionSpec> general_options()
              "tets: linear, quadratic (middle nodes are added where the mesh has none); _anp: with "
              "nodal, _bbar: with element averages of the dilatation; auto: p2, beyond nu = 0.49 "
              "p2_anp"),
-      choice("tissue_tangent", "rotated", {"rotated", "exact"},
+      choice("tissue_tangent", "auto", {"auto", "rotated", "exact"},
              "of corotational tissue: with the rotations held, as in the paper, or exact "
-             "(neo_hookean is always exact)"),
+             "(neo_hookean is always exact); auto: exact for the rest of a step in which three "
+             "linearisations left more than half of what was unbalanced"),
+      flag("tissue_allow_inversion",
+           "go on, with a warning, when linear tissue turns an element inside out"),
       choice("tissue_mass", "consistent", {"consistent", "lumped"}, "tissue mass matrix"),
   };
 }

@@ -86,6 +86,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                {"compliance/leftover_gap", 0, "m"},
                                {"compliance/stale_error", 0, "m"},
                                {"time_linearisations", 0, "1"},
+                               {"time_residual", 0, "1"},
                                {"step_seconds", 0, "s"}});
   return series;
 }
@@ -129,7 +130,7 @@ void append_work(const Simulation& simulation, const StepReport& report, double 
         static_cast<double>(report.compliance.reused), build_seconds,
         static_cast<double>(report.passes), static_cast<double>(simulation.tissue().factor_age()),
         report.leftover_gap, report.stale_error, static_cast<double>(report.linearisations),
-        seconds})
+        report.unbalanced, seconds})
     row.push_back({value});
 }
 

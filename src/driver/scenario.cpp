@@ -12,6 +12,7 @@
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
 #include "driver/scenario_checks.hpp"
+#include "driver/time_options.hpp"
 #include "io/gmsh_reader.hpp"
 #include "mesh/quadratic.hpp"
 
@@ -20,33 +21,6 @@ namespace {
 
 using core::Options;
 using core::Vec3;
-
-/// Of equal steps to the end: h itself when it goes into T whole, to a millionth of it, else the
-/// longest that is not above it.
-double equal_steps(double h, double T)
-{
-  constexpr double whole = 1e-6;
-  const double ratio = T / h, nearest = std::round(ratio);
-  if (T == 0.0 || (nearest >= 1.0 && std::abs(ratio - nearest) <= whole)) return h;
-  return T / std::ceil(ratio);
-}
-
-TimeSettings read_time(Options& options)
-{
-  TimeSettings time;
-  const std::map<std::string, Analysis> analyses{{"dynamic", Analysis::dynamic},
-                                                 {"static", Analysis::equilibrium},
-                                                 {"pv_curve", Analysis::pv_curve}};
-  time.analysis = analyses.at(options.text("analysis"));
-  time.asked = options.real("time_step");
-  time.end = options.real("time_end");
-  time.step = equal_steps(time.asked, time.end);
-  time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
-  time.second_order = options.text("time_scheme") == "bdf2";
-  time.newton_max = options.integer("time_newton_max");
-  time.direction_max = options.integer("constraint_direction_max");
-  return time;
-}
 
 std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh& mesh)
 {
@@ -92,8 +66,12 @@ tissue::TissueSettings read_tissue(Options& options, std::vector<tissue::Materia
                                                     {"corotational", tissue::Model::corotational},
                                                     {"neo_hookean", tissue::Model::neo_hookean}};
   settings.model = models.at(options.text("tissue_model"));
-  settings.tangent =
-      options.text("tissue_tangent") == "exact" ? tissue::Tangent::exact : tissue::Tangent::rotated;
+  const std::map<std::string, tissue::Tangent> tangents{{"auto", tissue::Tangent::automatic},
+                                                        {"rotated", tissue::Tangent::rotated},
+                                                        {"exact", tissue::Tangent::exact}};
+  settings.tangent = tangents.at(options.text("tissue_tangent"));
+  settings.allow_inversion = options.flag("tissue_allow_inversion");
+  settings.newton_tolerance = options.real("newton_tolerance");
   settings.mass =
       options.text("tissue_mass") == "lumped" ? tissue::Mass::lumped : tissue::Mass::consistent;
   settings.materials = std::move(materials);
@@ -138,10 +116,12 @@ insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& 
   }
   for (const mesh::SurfaceGroup& surface : mesh.surfaces)
     settings.puncture.surface.push_back(
-        options.given(puncture, surface.name) ? options.real(puncture, surface.name) : -1.0);
+        options.given_for(puncture, surface.name) ? options.real(puncture, surface.name) : -1.0);
   settings.tip.radius = options.real("insertion_tip_radius");
   settings.tip.friction = options.real("insertion_tip_friction");
-  settings.stick_tolerance = options.real("constraint_tolerance");
+  // Below this slip is round-off of the tissue's equilibrium, however well the laws are met.
+  constexpr double least_slip = 1e-9;  // [m]
+  settings.stick_tolerance = std::max(options.real("constraint_tolerance"), least_slip);
   return settings;
 }
 
@@ -252,11 +232,6 @@ void add_radius_correction(Scenario& scenario)
 }
 
 }  // namespace
-
-long step_count(const TimeSettings& time)
-{
-  return std::lround(time.end / time.step);
-}
 
 Scenario read_scenario(Options& options, const base::Comm& comm)
 {

@@ -25,7 +25,7 @@ struct TimeSettings
   double asked = 0.01;  ///< h as it was asked for [s]
   bool start_in_equilibrium = false;
   bool second_order = false;  ///< BDF2 instead of backward Euler
-  int newton_max = 1;         ///< linearisations per dynamic step
+  int newton_max = 0;         ///< linearisations per dynamic step; 0: as many as it takes
   int direction_max = 1;      ///< updates of the constraint directions per linearisation
 };
 

@@ -28,6 +28,9 @@ void refuse_idle(const Scenario& scenario)
   refuse(scenario.tissue.tangent == tissue::Tangent::exact &&
              scenario.tissue.model == tissue::Model::linear,
          "tissue_tangent exact: linear tissue has one tangent");
+  refuse(scenario.tissue.allow_inversion && scenario.tissue.model != tissue::Model::linear,
+         "tissue_allow_inversion: only linear tissue has forces where an element is turned inside "
+         "out");
   refuse(scenario.output.locking_gauge && scenario.cavities.cavities.empty(),
          "locking_gauge: there is no cavity (-cavities)");
   refuse(scenario.insertion.radius_correction && scenario.needles.empty(),

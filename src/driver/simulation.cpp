@@ -10,8 +10,7 @@
 namespace trocar::driver {
 namespace {
 
-constexpr double balance_tolerance = 1e-8;  ///< ‖r‖ / ‖forces‖ of an iterated step
-constexpr int most_linearisations = 50;     ///< of one static equilibrium
+constexpr int most_linearisations = 50;  ///< of one static equilibrium
 constexpr int most_load_steps = 64;
 
 }  // namespace
@@ -104,36 +103,31 @@ StepResult Simulation::step(const State& old, const core::TimeStep& step)
   if (const auto trouble = move_needles(old, next)) return StepResult::rejected(*trouble);
   if (cavities_ && now.t > 0.0) advance_cavities(old, next);
   StepReport report;
-  const bool to_tolerance = now.is_static || (cavities_ && cavities_->follows());
-  const int most = to_tolerance ? most_linearisations : scenario_.time.newton_max;
+  const Effort effort = effort_of(now);
   double residual = std::numeric_limits<double>::infinity();
   core::VecX last;  // multipliers, to go on from
   cavity::Shape walls = walls_of(next);
   Iterate before;
-  for (int iteration = 1; iteration <= most; ++iteration) {
-    if (most > 1) before.u = next.tissue.u;
+  tissue_.begin_step();
+  for (int iteration = 1; iteration <= effort.most; ++iteration) {
+    if (effort.most > 1) before.u = next.tissue.u;
     const Pass pass = linearised_step(past, now, residual, walls, next, last, report);  // 2 to 5
     if (pass.trouble) return StepResult::rejected(*pass.trouble);
     report.linearisations = iteration;
-    fem::OwnedField forces = most > 1 ? all_forces(pass, next, walls, now) : fem::OwnedField{};
-    double rest = before.unbalanced;
-    if (most > 1 && pass.upright) rest = unbalanced(past, next.tissue.u, now, forces);
-    if (pass.upright && (most == 1 || balanced(past, next, walls, now, pass, rest, residual))) {
+    Place here;
+    if (effort.measured) here = place_of(past, now, pass, walls, next);
+    if (pass.folded < 0 &&
+        enough(past, next, walls, now, pass, here.balance, before, residual, report)) {
+      if (const auto trouble = cannot_stand(now, here.balance))
+        return StepResult::rejected(*trouble);
       accept(old, past, now, pass, walls, next, report);
+      if (const auto trouble = collapsed(report)) return StepResult::rejected(*trouble);
       return {std::move(next), std::move(report), {}};
     }
-    const bool overshoots = rest > std::max(before.unbalanced, balance_tolerance);
-    if ((!pass.upright || overshoots) &&
-        (most == 1 || !shorten(past, now, pass.upright, before, forces, walls, next, rest)))
-      return StepResult::rejected("an element of the tissue would turn inside out");
-    before.forces = std::move(forces);
-    before.unbalanced = rest;
+    if (!lead_on(past, now, pass, effort, here, before, walls, next))
+      return StepResult::rejected(folds_at(pass.folded));
   }
-  const std::string what = residual <= balance_tolerance
-                               ? "the gaps of the rows stay open"
-                               : "relative residual " + core::shown(residual);
-  return StepResult::rejected("equilibrium not reached in " + std::to_string(most) +
-                              " linearisations (" + what + ")");
+  return StepResult::rejected(not_balanced(effort, residual));
 }
 
 // The step of both papers: every body moves freely, the rows that couple them are solved in one
@@ -145,9 +139,11 @@ try {
   Pass pass;
   fem::Load load;
   if (cavities_) load = cavities_->load(next.cavities, walls, now);
-  const tissue::FreeMotion tissue =
-      tissue_.free_motion(past.tissue, next.tissue.u, now, load,  // 2 each body alone
-                          report.linearisations > 0);
+  const bool goes_on = report.linearisations > 0;
+  tissue::FreeMotion tissue =
+      tissue_.free_motion(past.tissue, next.tissue.u, now, load, goes_on);  // 2 each body alone
+  if (tissue.trouble && tissue_.drop_exact())
+    tissue = tissue_.free_motion(past.tissue, next.tissue.u, now, load, goes_on);
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
@@ -158,12 +154,18 @@ try {
     if (gaps_closed(now, next, pass)) break;
   }
   if (pass.trouble) return pass;
-  pass.upright = tissue_.possible(next.tissue.u);
+  pass.folded = tissue_.folded(next.tissue.u);
+  if (scenario_.tissue.allow_inversion && next.tissue.u.value.allFinite()) {
+    report.folded = pass.folded;
+    pass.folded = -1;
+  }
   for (const needle::NeedleState& needle : next.needles)
     if (!needle.finite()) pass.trouble = "a needle's shape is not finite";
   return pass;
 } catch (const core::Unsolved& failure) {  // as a tangent without factor: a smaller step may do
-  if (!scenario_.tissue.exact_tangent()) throw;
+  const bool exact = tissue_.exact_tangent();
+  if (tissue_.drop_exact()) return linearised_step(past, now, residual, walls, next, last, report);
+  if (!exact) throw;
   Pass pass;
   pass.trouble = "the exact tangent was not solved with (an instability, or too large a step): " +
                  std::string(failure.what());
@@ -216,38 +218,6 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
     rows.of_needle.push_back(insertion_->add_rows(state.insertions[i], state.needles[i].shaft,
                                                   tissue, static_cast<int>(i), passing, rows.set));
   return rows;
-}
-
-bool Simulation::balanced(const State& past, const State& next, const cavity::Shape& walls,
-                          const core::TimeStep& now, const Pass& pass, double rest,
-                          double& residual) const
-{
-  const bool pushed = pass.lambda.lambda.size() > 0;
-  residual = rest;
-  for (std::size_t i = 0; i < needles_.size(); ++i) {
-    // Of a needle the next increment is asked: against its axial stiffness, forces that bend it
-    // are below round-off.
-    const needle::Linearised again = needles_[i].linearise(past.needles[i], next.needles[i], now);
-    const core::VecX lever = pushed ? pass.levers[i] : core::VecX::Zero(again.r.size()).eval();
-    residual = std::max(residual, needles_[i].relative_increment(again, lever));
-  }
-  if (!(residual <= balance_tolerance)) return false;
-  if (cavities_ && cavities_->exact() && !cavities_->closed(next.cavities, walls, now))
-    return false;
-  return gaps_closed(now, next, pass);
-}
-
-// The rows turn with the shaft: the gaps of the new geometry must be closed as well.
-bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const
-{
-  const Rows again = coupling_rows(now, next);
-  for (int i = 0; i < again.set.size(); ++i) {
-    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
-    const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
-                      row.relative_softness == 0.0 && pass.mobility[i] > 0.0;
-    if (hard && std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, 1e-9)) return false;
-  }
-  return true;
 }
 
 void Simulation::accept(const State& old, const State& past, const core::TimeStep& now,

@@ -79,6 +79,8 @@ struct StepReport
   int pressure_updates = 0;  ///< of frozen cavities
   int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
   double residual = 0.0;                   ///< worst of the step [m]
+  double unbalanced = 0.0;                 ///< tissue::Balance::worst at the end of the step
+  int folded = -1;                         ///< tet that linear tissue was allowed to fold; -1: none
   double condition = 0.0;                  ///< see law::Multipliers
   int outer = 0;                           ///< most solves that state-dependent bounds took
   double contraction = 0.0;                ///< worst ratio of their last two changes
@@ -152,7 +154,7 @@ class Simulation
   {
     Rows rows;
     std::optional<std::string> trouble;  ///< why the step cannot be taken; agreed by all ranks
-    bool upright = true;                 ///< no element turned inside out; agreed by all ranks
+    int folded = -1;  ///< file tet that is turned inside out, -1: none; agreed by all ranks
     law::Problem problem;
     law::Multipliers lambda;
     bool same_laws = false;                      ///< every row holds or slips as in the pass before
@@ -171,7 +173,23 @@ class Simulation
   {
     fem::OwnedField u, forces;  ///< place, and forces of needles and cavities on the tissue [N]
     double unbalanced = std::numeric_limits<double>::infinity();  ///< there
+    double lost = std::numeric_limits<double>::infinity();        ///< Balance::lost there [N]
     int turnovers = 0;  ///< increments in a row that turned elements inside out
+    int slow = 0;       ///< linearisations that left more than half of what was unbalanced
+  };
+  /// Where a linearisation led.
+  struct Place
+  {
+    fem::OwnedField forces{};  ///< of needles and cavities on the tissue [N]
+    tissue::Balance balance{};
+  };
+  /// How often a step is linearised, and until when.
+  struct Effort
+  {
+    int most;       ///< linearisations
+    double first;   ///< Balance::worst at which one will do; 0: never
+    double later;   ///< and which ends the others
+    bool measured;  ///< whether the balance is looked at
   };
 
   Differenced velocity_of(const State& state, double h) const;
@@ -212,13 +230,22 @@ class Simulation
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
   tissue::Push push_of(const Pass& pass) const;
   double lag_tolerance(const core::TimeStep& now, double residual, bool rows) const;
-  bool balanced(const State& past, const State& next, const cavity::Shape& walls,
-                const core::TimeStep& now, const Pass& pass, double rest, double& residual) const;
-  double unbalanced(const State& past, const fem::OwnedField& u, const core::TimeStep& now,
-                    const fem::OwnedField& forces) const;
+  Effort effort_of(const core::TimeStep& now) const;
+  Place place_of(const State& past, const core::TimeStep& now, const Pass& pass,
+                 const cavity::Shape& walls, const State& next);
+  bool enough(const State& past, const State& next, const cavity::Shape& walls,
+              const core::TimeStep& now, const Pass& pass, const tissue::Balance& balance,
+              const Iterate& before, double& residual, StepReport& report) const;
+  bool lead_on(const State& past, const core::TimeStep& now, const Pass& pass, const Effort& effort,
+               Place& here, Iterate& before, cavity::Shape& walls, State& next);
   bool shorten(const State& past, const core::TimeStep& now, bool upright, Iterate& before,
-               fem::OwnedField& forces, cavity::Shape& walls, State& next,
-               double& unbalanced_part) const;
+               fem::OwnedField& forces, cavity::Shape& walls, State& next, double& unbalanced_part);
+  std::string folds_at(int tet) const;
+  std::string not_balanced(const Effort& effort, double residual) const;
+  std::string place_of_row(const Pass& pass, int row) const;
+  std::optional<std::string> cannot_stand(const core::TimeStep& now,
+                                          const tissue::Balance& balance) const;
+  std::optional<std::string> collapsed(const StepReport& report) const;
   void accept(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
               const cavity::Shape& walls, State& next, StepReport& report) const;
   void account(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,

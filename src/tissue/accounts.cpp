@@ -42,7 +42,7 @@ Work Tissue::work(const TissueState& old, const TissueState& past, const TissueS
       space_->comm().sum(step.h * (mine.damping_power_mass + mine.damping_power_stiffness));
   // Loads, and the supports where they move: they carry what is out of balance on their dofs.
   const OwnedField moved{next.u.value - old.u.value};
-  OwnedField support{-forces(past, next.u, at, step, nullptr).value - push.value};
+  OwnedField support{-forces(past, next.u, at, step).value - push.value};
   OwnedField elsewhere = support;
   fixed_.clear(elsewhere);
   support.value -= elsewhere.value;

@@ -127,8 +127,7 @@ core::VecX ElementsOf<N>::led_pressures(const Configuration& last, const Ghosted
 
 template <int N>
 void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
-                                   const core::VecX& p, OwnedField& internal,
-                                   OwnedField& inertia) const
+                                   const core::VecX& p, ForceSums& sums) const
 {
   const Material& m = material(e);
   const bool moves = motion.v.value.size() > 0;
@@ -150,27 +149,30 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
     }
     force += shapes_[point].volume * (P + pressure * by) * shapes_[point].gradient;
   }
-  scatter(force, e, internal);
-  if (motion.a.value.size() == 0) return;
-  const Nodal w = nodal(motion.a, e) + m.rayleigh_mass * v;
-  scatter(m.density * mass_factor(e) * w * mass_form(e), e, inertia);
+  scatter(force, e, sums.internal);
+  Nodal inertia = Nodal::Zero();
+  if (motion.a.value.size() > 0) {
+    const Nodal w = nodal(motion.a, e) + m.rayleigh_mass * v;
+    inertia = m.density * mass_factor(e) * w * mass_form(e);
+    scatter(inertia, e, sums.inertia);
+  }
+  if (sums.size.size() > 0) add_sizes(e, motion, force, inertia, sums);
 }
 
 template <int N>
 void ElementsOf<N>::add_forces(const Configuration& at, const Kinematics& motion,
-                               OwnedField& internal, OwnedField& inertia) const
+                               ForceSums& sums) const
 {
   const core::VecX p = averaged() ? pressures(at, motion) : core::VecX();
-  for (std::size_t e = 0; e < tets(); ++e) add_tet_forces(e, at, motion, p, internal, inertia);
+  for (std::size_t e = 0; e < tets(); ++e) add_tet_forces(e, at, motion, p, sums);
 }
 
 template <int N>
 void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
-                                  const Kinematics& motion, OwnedField& internal,
-                                  OwnedField& inertia) const
+                                  const Kinematics& motion, ForceSums& sums) const
 {
   const core::VecX p = averaged() ? pressures(at, motion) : core::VecX();
-  for (std::size_t e : tets) add_tet_forces(e, at, motion, p, internal, inertia);
+  for (std::size_t e : tets) add_tet_forces(e, at, motion, p, sums);
 }
 
 template <int N>

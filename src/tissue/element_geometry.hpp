@@ -118,15 +118,15 @@ void ElementsOf<N>::gather_gradients(const GhostedField& u, std::size_t first, s
 }
 
 template <int N>
-bool ElementsOf<N>::upright(const GhostedField& u) const
+int ElementsOf<N>::folded(const GhostedField& u) const
 {
-  if (settings_.model == Model::linear) return true;
   for (std::size_t e = 0; e < tets(); ++e) {
     const Nodal w = nodal(u, e);
     for (std::size_t q = 0; q < points; ++q)
-      if (!((Mat3::Identity() + gradient(w, points * e + q)).determinant() > 0.0)) return false;
+      if (!((Mat3::Identity() + gradient(w, points * e + q)).determinant() > 0.0))
+        return space_->file_tet(e);
   }
-  return true;
+  return -1;
 }
 
 template <int N>

@@ -38,7 +38,7 @@ struct ElementSettings
   Model model = Model::corotational;
   Mass mass = Mass::consistent;
   Dilatation dilatation = Dilatation::pointwise;
-  Tangent tangent = Tangent::rotated;
+  Tangent tangent = Tangent::automatic;
   std::vector<Material> materials;  ///< by volume of the mesh
 
   /// The operator is the whole derivative of the forces: it may be indefinite.
@@ -63,9 +63,19 @@ struct Configuration
 /// Displacement with velocity and what else inertia acts on, w = a + α v.
 struct Kinematics
 {
-  GhostedField u;  ///< [m]
-  GhostedField v;  ///< [m/s]; empty: at rest
-  GhostedField a;  ///< [m/s²]; empty: no inertia
+  GhostedField u;       ///< [m]
+  GhostedField v;       ///< [m/s]; empty: at rest
+  GhostedField a;       ///< [m/s²]; empty: no inertia
+  core::Rates rates{};  ///< that v and a were differenced with
+};
+
+/// Forces on owned nodes, summed over tets.
+struct ForceSums
+{
+  OwnedField internal, inertia;  ///< of stress and stiffness damping; of mass and its damping [N]
+  /// Σ over tets of the length of their force on a node, and a bound of what rounding can make of
+  /// it, over the unit round-off (owned nodes each); empty: not asked for [N].
+  core::VecX size{}, rounding{};
 };
 
 /// Elastic stress and energy density of tets.
@@ -96,8 +106,8 @@ class Elements
   /// Nodes that a shared dilatation couples, beyond those of the tets.
   virtual const fem::Cliques& cliques() const = 0;
 
-  /// False when a tet is turned inside out at u, where the model minds.
-  virtual bool upright(const GhostedField& u) const = 0;
+  /// The first tet that is turned inside out at u, in file numbering; -1: none.
+  virtual int folded(const GhostedField& u) const = 0;
   /// Rotations, and for exact tangents the rest, at u. False when a tet is turned inside out.
   virtual bool configure(const GhostedField& u, Configuration& at) const = 0;
   /// Pressures [Pa] to which the linearisation `last` leads with the further displacement d: what
@@ -116,13 +126,14 @@ class Elements
   virtual OwnedField operate(const Configuration& at, const core::Rates& rate,
                              const GhostedField& d) const = 0;
 
-  /// Adds the forces of stress, stiffness damping, and inertia with mass damping [N].
-  virtual void add_forces(const Configuration& at, const Kinematics& motion, OwnedField& internal,
-                          OwnedField& inertia) const = 0;
+  /// Adds the forces of stress, stiffness damping, and inertia with mass damping.
+  virtual void add_forces(const Configuration& at, const Kinematics& motion,
+                          ForceSums& sums) const = 0;
   /// The same into the nodes of some tets only.
   virtual void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
-                             const Kinematics& motion, OwnedField& internal,
-                             OwnedField& inertia) const = 0;
+                             const Kinematics& motion, ForceSums& sums) const = 0;
+  /// Takes the exact tangent, or that with the rotations held, from the next `configure` on.
+  virtual void take(Tangent tangent) = 0;
 
   virtual TetWork work(const Configuration& at, const Kinematics& motion) const = 0;
   /// By local tet.

@@ -21,7 +21,7 @@ class ElementsOf final : public Elements
   ElementsOf(const mesh::Mesh& mesh, const fem::Space& space, const ElementSettings& settings);
 
   const fem::Cliques& cliques() const override { return cliques_; }
-  bool upright(const GhostedField& u) const override;
+  int folded(const GhostedField& u) const override;
   bool configure(const GhostedField& u, Configuration& at) const override;
   core::VecX led_pressures(const Configuration& last, const GhostedField& d) const override;
   void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
@@ -30,11 +30,11 @@ class ElementsOf final : public Elements
                 fem::BlockMatrix& values) const override;
   OwnedField operate(const Configuration& at, const core::Rates& rate,
                      const GhostedField& d) const override;
-  void add_forces(const Configuration& at, const Kinematics& motion, OwnedField& internal,
-                  OwnedField& inertia) const override;
+  void add_forces(const Configuration& at, const Kinematics& motion,
+                  ForceSums& sums) const override;
   void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
-                     const Kinematics& motion, OwnedField& internal,
-                     OwnedField& inertia) const override;
+                     const Kinematics& motion, ForceSums& sums) const override;
+  void take(Tangent tangent) override { settings_.tangent = tangent; }
   TetWork work(const Configuration& at, const Kinematics& motion) const override;
   StressField stresses(const Configuration& at, const GhostedField& u) const override;
   void add_weight(const core::Vec3& gravity, OwnedField& force) const override;
@@ -95,7 +95,9 @@ class ElementsOf final : public Elements
   core::VecX dilatation_rates(const Configuration& at, const GhostedField& d) const;
   core::VecX pressures(const Configuration& at, const Kinematics& motion) const;
   void add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
-                      const core::VecX& p, OwnedField& internal, OwnedField& inertia) const;
+                      const core::VecX& p, ForceSums& sums) const;
+  void add_sizes(std::size_t e, const Kinematics& motion, const Nodal& force, const Nodal& inertia,
+                 ForceSums& sums) const;
   void add_patches(const Configuration& at, const core::Rates& rate,
                    const fem::BlockPattern& pattern, fem::BlockMatrix& values) const;
   Mat3 increment(const Configuration& at, const core::Rates& rate, std::size_t point,

@@ -4,8 +4,9 @@ namespace trocar::tissue {
 
 enum class Model { linear, corotational, neo_hookean };
 
-/// Of corotational tissue: R K₀ Rᵀ with the rotations held, as in the paper, or all of it.
-enum class Tangent { rotated, exact };
+/// Of corotational tissue: R K₀ Rᵀ with the rotations held, as in the paper, or all of it; or the
+/// first until it leads on too slowly within a step.
+enum class Tangent { rotated, exact, automatic };
 
 /// Isotropic elasticity and mass of one tissue.
 struct Material

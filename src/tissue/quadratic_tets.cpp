@@ -1,5 +1,6 @@
 #include "tissue/element_forces.hpp"
 #include "tissue/element_geometry.hpp"
+#include "tissue/element_sizes.hpp"
 
 namespace trocar::tissue {
 

@@ -14,12 +14,10 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
       elements_(Elements::make(mesh, space, settings_)),
       pattern_(space, elements_->cliques()),
       values_(pattern_),
+      automatic_(settings_.model == Model::corotational && settings_.tangent == Tangent::automatic),
       weight_(space.zero())
 {
   elements_->add_weight(settings_.boundary.gravity, weight_);
-  double stiffest = 0.0;
-  for (const Material& m : settings_.materials) stiffest = std::max(stiffest, m.young);
-  smallest_scale_ = 1e-5 * stiffest * std::pow(mesh::quality(mesh).volume, 2.0 / 3.0);
   for (const Traction& traction : settings_.boundary.tractions)
     traction_.push_back(
         traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
@@ -93,36 +91,6 @@ void Tissue::use_operator(const Configuration& at, const TimeStep& step)
   }
 }
 
-/// `goes_on`: from the last linearisation, whose pressures then lead to those of the tangent.
-bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
-{
-  const bool led = goes_on && exact_at_;
-  core::VecX p;
-  if (led) p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
-  const bool upright = configure(space_->with_ghosts(iterate), at_);
-  exact_at_ = upright && settings_.exact_tangent();
-  if (exact_at_) u_at_ = iterate;
-  if (led && upright) at_.p = std::move(p);
-  return upright;
-}
-
-/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Agreed by
-/// all ranks, as the failures of a factor are. Otherwise the operator fails for good.
-std::optional<std::string> Tissue::why_not(const std::function<void()>& make_operator)
-{
-  try {
-    make_operator();
-  } catch (const core::Failure& failure) {
-    if (!settings_.exact_tangent() || failure.code() != core::ExitCode::solver) throw;
-    current_->older = false;
-    current_->rate.reset();
-    current_->uses = 0;
-    return "the exact tangent has no factor (an instability, or too large a step): " +
-           std::string(failure.what());
-  }
-  return std::nullopt;
-}
-
 OwnedField Tissue::external(const TimeStep& step) const
 {
   OwnedField f{step.load * weight_.value};
@@ -133,24 +101,44 @@ OwnedField Tissue::external(const TimeStep& step) const
 }
 
 OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Configuration& at,
-                          const TimeStep& step, double* scale,
-                          const std::vector<std::size_t>* elements) const
+                          const TimeStep& step, Sizes* sizes) const
+{
+  ForceSums sums{space_->zero(), space_->zero()};
+  if (sizes) {
+    sums.size = std::move(sizes->size);
+    sums.rounding = std::move(sizes->rounding);
+  }
+  elements_->add_forces(at, kinematics(old, u, step), sums);
+  const OwnedField load = external(step);
+  if (sizes) {
+    const double norms =
+        space_->norm(load) + space_->norm(sums.internal) + space_->norm(sums.inertia);
+    *sizes = {std::move(sums.size), std::move(sums.rounding), norms};
+    for (int a = 0; a < space_->owned(); ++a) sizes->size[a] += load.node(a).norm();
+  }
+  return {load.value - sums.internal.value - sums.inertia.value};
+}
+
+/// The same of some elements alone, and all loads.
+OwnedField Tissue::forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
+                             const OwnedField& u, const Configuration& at,
+                             const TimeStep& step) const
+{
+  ForceSums sums{space_->zero(), space_->zero()};
+  elements_->add_forces_of(elements, at, kinematics(old, u, step), sums);
+  return {external(step).value - sums.internal.value - sums.inertia.value};
+}
+
+Kinematics Tissue::kinematics(const TissueState& old, const OwnedField& u,
+                              const TimeStep& step) const
 {
   Kinematics motion{space_->with_ghosts(u), {}, {}};
-  if (!step.is_static) {
-    const core::Rates rate = step.rates();
-    const OwnedField v{(u.value - old.u.value) * rate.velocity};
-    motion.v = space_->with_ghosts(v);
-    motion.a = space_->with_ghosts({(v.value - old.v.value) * rate.acceleration});
-  }
-  OwnedField internal = space_->zero(), inertia = space_->zero();
-  if (elements)
-    elements_->add_forces_of(*elements, at, motion, internal, inertia);
-  else
-    elements_->add_forces(at, motion, internal, inertia);
-  const OwnedField load = external(step);
-  if (scale) *scale = space_->norm(load) + space_->norm(internal) + space_->norm(inertia);
-  return {load.value - internal.value - inertia.value};
+  if (step.is_static) return motion;
+  motion.rates = step.rates();
+  const OwnedField v{(u.value - old.u.value) * motion.rates.velocity};
+  motion.v = space_->with_ghosts(v);
+  motion.a = space_->with_ghosts({(v.value - old.v.value) * motion.rates.acceleration});
+  return motion;
 }
 
 FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
@@ -160,12 +148,12 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
     return {space_->zero(), {}, "an element of the tissue turned inside out"};
   if (auto trouble = why_not([&] { use_operator(at_, step); }))
     return {space_->zero(), {}, std::move(trouble)};
-  // Under loads that follow r is the rest of large forces: below their round-off there is nothing
-  // to be balanced.
-  constexpr double rest_of_forces = 1e-10;
-  double scale = 0.0;
-  OwnedField r = forces(old, iterate, at_, step, more.stiffness ? &scale : nullptr);
-  if (more.stiffness) scale = rest_of_forces * std::max(scale, smallest_scale_);
+  // An approach ends where rounding of the forces does, or would run on and on where nothing
+  // happens. Under loads that follow r is the rest of large ones.
+  const bool approach = current_->older || more.stiffness;
+  Sizes sizes;
+  if (approach) sizes = no_sizes();
+  OwnedField r = forces(old, iterate, at_, step, approach ? &sizes : nullptr);
   if (more.force.value.size() > 0) r.value += more.force.value;
 
   OwnedField prescribed = space_->zero();
@@ -181,8 +169,9 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   if (moves) r.value -= operate_by_elements(at_, step.rates(), prescribed).value;
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
-  if (current_->older || more.stiffness)
-    begin_approach(old, step, r, more, scale, goes_on, motion);
+  const double least = more.stiffness ? 1e-10 : 1e-12;
+  if (approach)
+    begin_approach(old, step, r, more, least_rest(sizes, least), goes_on, motion);
   else
     motion.half = begin(r);
   return motion;
@@ -211,13 +200,6 @@ OwnedField Tissue::finish(const FreeMotion& motion, const solve::Probes& probes,
   return u;
 }
 
-bool Tissue::possible(const OwnedField& u) const
-{
-  bool good = u.value.allFinite();
-  if (settings_.model != Model::linear) good = elements_->upright(space_->with_ghosts(u)) && good;
-  return space_->comm().all(good);
-}
-
 OwnedField Tissue::answer(const OwnedField& forces)
 {
   OwnedField u = current_->solver->finish(begin(forces), {}, {});
@@ -232,14 +214,12 @@ solve::HalfSolution Tissue::begin(const OwnedField& forces)
   return current_->solver->begin(f);
 }
 
-OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
-                            double& scale) const
+OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step) const
 {
   Configuration at;
   configure(space_->with_ghosts(u), at);
-  OwnedField r = forces(old, u, at, step, &scale);
+  OwnedField r = forces(old, u, at, step);
   fixed_.clear(r);
-  scale = std::max(scale, smallest_scale_);
   return r;
 }
 

@@ -12,6 +12,7 @@
 #include "mesh/mesh.hpp"
 #include "solve/step_solver.hpp"
 #include "tissue/approach.hpp"
+#include "tissue/balance.hpp"
 #include "tissue/boundary.hpp"
 #include "tissue/elements.hpp"
 
@@ -30,6 +31,9 @@ struct TissueSettings : ElementSettings
   std::vector<int> pinned;   ///< file nodes that needles are planned to reach
   /// Equilibrium that a step with an older factor must reach, of its load; 0: always factor anew.
   double lag_tolerance = 0.0;
+  bool allow_inversion = false;  ///< of linear tissue, which feels nothing of it
+  /// Part of the forces at a node that may be left unbalanced where steps are iterated to the end.
+  double newton_tolerance = 1e-8;
 };
 
 /// Displacement and velocity of every owned node. A value.
@@ -80,9 +84,17 @@ class Tissue
   FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
                          const fem::Load& more = {}, bool goes_on = false);
 
-  /// False when a displacement is not finite or turns a corotational element inside out.
-  /// Collective.
-  bool possible(const OwnedField& u) const;
+  /// The first tet that u, or a part of it that is not finite, turns inside out, in file numbering;
+  /// -1: none. Collective; equal on every rank.
+  int folded(const OwnedField& u) const;
+
+  /// Tangents of `automatic`: every step begins with the rotated one, may take the exact one from
+  /// some linearisation on, and goes back for good when that has no factor. Each returns whether
+  /// anything changed.
+  void begin_step();
+  bool take_exact();
+  bool drop_exact();
+  bool exact_tangent() const { return settings_.exact_tangent(); }
 
   /// u_free - u at the probes [m], by slot. Collective.
   core::VecX at(const solve::Probes& probes, const FreeMotion& motion, const OwnedField& u);
@@ -116,11 +128,11 @@ class Tissue
   /// Collective.
   solve::HalfSolution begin(const OwnedField& forces);
 
-  /// r = f_ext - f_int(u) - M(Δu/h - v)/h̄ - BΔu/h [N] on free dofs, and the size of its terms.
-  /// `scale` gets ‖f_ext‖ + ‖f_int‖ + ‖inertia‖, but at least 1e-5 E V^(2/3): an unloaded body is
-  /// in balance although its round-off is as large as its forces. Collective.
-  OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step,
-                      double& scale) const;
+  /// r = f_ext - f_int(u) - M(Δu/h - v)/h̄ - BΔu/h [N] on free dofs. Collective.
+  OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
+  /// The same with forces of rows and fluids, `more`, against what it is the rest of. Collective.
+  Balance balance(const TissueState& past, const OwnedField& u, const TimeStep& step,
+                  const OwnedField& more);
 
   /// Forces [N] by which every prescribed displacement of the boundary conditions holds the tissue
   /// (x, y, z each), `more` being those of rows and cavities. Costs the elements there. Collective.
@@ -195,8 +207,15 @@ class Tissue
   void end_approach(FreeMotion& motion, bool convex);
   OwnedField operate(const Approach& approach, const OwnedField& d) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const Configuration& at,
-                    const TimeStep& step, double* scale,
-                    const std::vector<std::size_t>* elements = nullptr) const;
+                    const TimeStep& step, Sizes* sizes = nullptr) const;
+  OwnedField forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
+                       const OwnedField& u, const Configuration& at, const TimeStep& step) const;
+  Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
+  Sizes no_sizes() const;
+  void take(Tangent tangent);
+  /// Norm of what need not be balanced: a part of the sizes, and what rounding leaves [N].
+  /// Collective.
+  double least_rest(const Sizes& sizes, double part) const;
   void find_tools();
   OwnedField external(const TimeStep& step) const;
 
@@ -208,11 +227,17 @@ class Tissue
   std::unique_ptr<Elements> elements_;
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
-  double smallest_scale_ = 0.0;  ///< 1e-5 E V^(2/3) [N]
-  Configuration at_;             ///< of the present linearisation
-  OwnedField u_at_;              ///< where that is, with an exact tangent [m]
-  bool exact_at_ = false;        ///< it is that of an exact tangent; equal on all ranks
-  OwnedField weight_;            ///< ∫ N_a ρ g of every node [N]
+  Configuration at_;       ///< of the present linearisation
+  OwnedField u_at_;        ///< where that is, with an exact tangent [m]
+  bool exact_at_ = false;  ///< it is that of an exact tangent; equal on all ranks
+  struct
+  {
+    std::optional<OwnedField> u;
+    Configuration at;
+  } configured_;    ///< where the balance was looked at last: often the next step begins there
+  bool automatic_;  ///< the tangent may change within a step
+  bool dropped_ = false;  ///< not to the exact one in this step
+  OwnedField weight_;     ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Dofs that a prescribed displacement holds: owned dof and which condition.
   std::vector<std::pair<Eigen::Index, std::size_t>> tool_dofs_;

@@ -33,7 +33,7 @@ std::vector<Vec3> Tissue::tool_forces(const TissueState& old, const OwnedField& 
 {
   Configuration at;
   elements_->configure_for(tool_elements_, space_->with_ghosts(u), at);
-  const OwnedField held = forces(old, u, at, step, nullptr, &tool_elements_);
+  const OwnedField held = forces_of(tool_elements_, old, u, at, step);
   const std::size_t count = settings_.boundary.displacements.size();
   core::VecX sums = core::VecX::Zero(3 * static_cast<Eigen::Index>(count));
   for (const auto& [dof, tool] : tool_dofs_)

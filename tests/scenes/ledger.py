@@ -3,7 +3,7 @@ import os
 
 import numpy as np
 
-from harness import (check, completed, finish, geometry, histories, ledger, options, run,
+from harness import (check, completed, finish, geometry, histories, ledger, options, run, structured,
                      small_block)
 
 small = options("small_insertion.opts")
@@ -85,6 +85,35 @@ for steps in (1, 5):
         check(plain["compliance/leftover_gap"].max() == gap, "asking for the error changes nothing")
         check(1e-9 < gap < 1e-3 and 1e-9 < error < 1e-3,
               f"stale: gap off by {gap:.1e} m, displacement by {error:.1e} m")
+# At rest, with a needle on its way and with one that slides without friction nothing is left to do:
+# one factor for ever, one pass a step and at most two, whatever the tissue turns by its weight.
+rest = {"-mesh": structured("gel_cube", *"--nodes 7 7 7 --size 0.25 0.25 0.25 --split 6".split()),
+        "-tissue_young": "1e6", "-tissue_density": "64", "-gravity": "0,0,-9.81", "-fix": "z0",
+        "-time_step": "0.01", "-time_end": "0.3"}
+needle = {"-needles": "n", "-needle_entry": "0.129,0.123,0.25", "-needle_direction": "0,0,-1",
+          "-needle_length": "0.2", "-needle_radius": "0.001"}
+slides = {**needle, "-needle_velocity": "0.3", "-needle_depth": "0.08"}
+for name, scene in {"still": {"-time_initial": "equilibrium"},
+                    "needle before it": {**needle, "-time_initial": "equilibrium"},
+                    "slides without friction": {**slides, "-time_initial": "equilibrium", "-needle_model": "rigid"},
+                    "slides, beam": {**slides, "-time_initial": "equilibrium"},
+                    "slides, neo-Hookean": {**slides, "-time_initial": "equilibrium",
+                                            "-tissue_model": "neo_hookean"},
+                    "slides, p2": {**slides, "-time_initial": "equilibrium", "-tissue_element": "p2"},
+                    "slides, statics": {**slides, "-analysis": "static"}}.items():
+    for ranks in (1, 2):
+        folder = completed({**rest, **scene}, ranks)
+        passes, work = histories(folder)["compliance/passes"][1:], ledger(folder)
+        # The start and what follows it have operators of their own.
+        most = 2 if "static" not in name else 1
+        check(np.median(passes) <= 1 and passes[2:].max() <= 2 and work["factorisations"] <= most + 1,
+              f"{name}, {ranks} ranks: {passes.max():.0f} passes at most, {work['factorisations']} factors")
+static = {**rest, "-analysis": "static", "-time_end": "0", "-tissue_model": "linear"}
+for solver in ({}, {"-tissue_ksp_type": "cg", "-tissue_pc_type": "jacobi"},
+               {"-tissue_ksp_type": "cg", "-tissue_pc_type": "gamg"}):
+    for element in ("p1", "p2"):
+        folder = completed({**static, **solver, "-tissue_element": element})
+        check(histories(folder)["time_linearisations"][-1] == 1, f"linear statics by {solver} {element}: solved once")
 work = ledger(completed(small))
 check(work["surface_passes"] == 0 and work["pressure_updates"] == 0, "no cavity: no pass over a wall")
 phantom = options("phantom.opts")

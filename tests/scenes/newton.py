@@ -23,11 +23,11 @@ def pushed(element, y, z, steps, ranks=1):
 
 
 # Pushed by 25 mm through a block of 40 mm; and down to 5 mm above the plate it is held by.
-for element, y, z, most in (("p2", 0.044, 0.038, 11), ("p1", 0.0193, 0.0047, 15)):
+for element, y, z, most in (("p2", 0.044, 0.038, 12), ("p1", 0.0193, 0.0047, 15)):
     (one, work), (ten, of_ten) = pushed(element, y, z, 1), pushed(element, y, z, 10)
     off = abs(one - ten).max() / abs(ten).max()
     check(off < 1e-6, f"{element}, to y {y} z {z}: one step and ten differ by {off:.1e}")
-    check(work["assemblies"] <= most and of_ten["assemblies"] <= 70
+    check(work["assemblies"] <= most and of_ten["assemblies"] <= 75
           and work["rejected_steps"] == 0,
           f"in {work['assemblies']} and {of_ten['assemblies']} linearisations, "
           f"{work['rejected_steps']} and {of_ten['rejected_steps']} steps halved")

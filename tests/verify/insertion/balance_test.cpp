@@ -24,9 +24,8 @@ TEST(Balance, ActionEqualsReaction)
       const core::TimeStep now{0.02 * n, 0.02, false};
       const driver::StepResult result = simulation.step(state, now);
       ASSERT_TRUE(result.state) << result.why;
-      double scale = 0.0;
       const fem::GlobalField unbalanced = simulation.space().gather(
-          simulation.tissue().residual(state.tissue, result.state->tissue.u, now, scale));
+          simulation.tissue().residual(state.tissue, result.state->tissue.u, now));
       Vec3 on_tissue = Vec3::Zero();
       for (int node = 0; node < scenario.mesh.node_count(); ++node)
         on_tissue -= unbalanced.node(node);
@@ -53,9 +52,8 @@ TEST(Balance, ActionEqualsReactionInEquilibrium)
     driver::Simulation simulation(scenario, comm);
     const driver::StepResult start = simulation.initial_state();
     ASSERT_TRUE(start.state) << start.why;
-    double scale = 0.0;
     const fem::GlobalField unbalanced = simulation.space().gather(simulation.tissue().residual(
-        simulation.tissue().at_rest(), start.state->tissue.u, {0, 1, true}, scale));
+        simulation.tissue().at_rest(), start.state->tissue.u, {0, 1, true}));
     Vec3 on_tissue = Vec3::Zero();
     for (int node = 0; node < scenario.mesh.node_count(); ++node)
       on_tissue -= unbalanced.node(node);
@@ -66,7 +64,8 @@ TEST(Balance, ActionEqualsReactionInEquilibrium)
 }
 
 // A needle row whose nodes are all prescribed has no force; its gap stays and statics converge.
-TEST(Balance, RowsOnPrescribedNodesAreLeftAlone)
+// Drawn aside where a support holds the tissue: no force closes that gap, and the step says where.
+TEST(Balance, AGapThatASupportHoldsOpenIsRefused)
 {
   driver::Scenario scenario = test::needle_scenario(plain);
   scenario.time.analysis = driver::Analysis::equilibrium;
@@ -76,9 +75,41 @@ TEST(Balance, RowsOnPrescribedNodesAreLeftAlone)
   scenario.needles[0].motion.trajectory =
       core::parse_csv("time,x,y,z\n0,-0.05,0.02,0.02\n1,-0.05,0.021,0.02\n", "aside.csv");
   scenario.time.end = 0.04;
-  const test::Run run = test::run(scenario);
-  EXPECT_LT(run.reports.back().rank, run.reports.back().rows);
-  EXPECT_GT(run.reports.back().needles[0].base.force.norm(), 1e-4);
+  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const driver::StepResult start = simulation.initial_state();
+  ASSERT_TRUE(start.state) << start.why;
+  const driver::StepResult aside = simulation.step(*start.state, {0.01, 0.01, true});
+  ASSERT_FALSE(aside.state);
+  EXPECT_NE(aside.why.find("needle 'needle' where the undeformed tissue has (0, 0.02, 0.02) m"),
+            std::string::npos)
+      << aside.why;
+}
+
+// A needle through a held face slips there as anywhere else, rigid or not: its base carries the
+// friction of all its length.
+TEST(Balance, AHeldFaceRubsLikeAnyOther)
+{
+  for (needle::Model model : {needle::Model::rigid, needle::Model::beam})
+    for (bool withdraws : {false, true}) {
+      driver::Scenario scenario = test::needle_scenario(plain);
+      scenario.time.analysis = driver::Analysis::equilibrium;
+      scenario.tissue.boundary.fixed = {{"x0", 7}};
+      scenario.tissue.materials[0].young = 1e7;
+      scenario.insertion.friction = test::same({20.0, 20.0, 0.0});
+      needle::NeedleSettings& needle = scenario.needles[0];
+      needle.model = model;
+      needle.motion.entry = Vec3(0, 0.0193, 0.0171);
+      needle.motion.velocity = 0.02;
+      needle.motion.depth = 0.03;
+      needle.motion.withdraw_velocity = withdraws ? 0.02 : 0.0;
+      scenario.time.step = 0.1;
+      scenario.time.end = withdraws ? 2.0 : 1.3;
+      const test::Run run = test::run(scenario);
+      const driver::NeedleReport& last = run.reports.back().needles[0];
+      const double friction = (withdraws ? -20.0 : 20.0) * last.depth;
+      EXPECT_GT(last.depth, 0.015);
+      EXPECT_NEAR(last.base.force.x(), friction, 1e-3 * std::abs(friction));
+    }
 }
 
 }  // namespace

@@ -36,9 +36,8 @@ struct Pair
   fem::OwnedField viscous(const fem::OwnedField& u, const fem::OwnedField& v) const
   {
     const tissue::TissueState old{{u.value - h * v.value}, v};
-    double scale = 0.0;
-    return {without.tissue.residual(old, u, {h, h, false}, scale).value -
-            with.tissue.residual(old, u, {h, h, false}, scale).value};
+    return {without.tissue.residual(old, u, {h, h, false}).value -
+            with.tissue.residual(old, u, {h, h, false}).value};
   }
   double power(const fem::OwnedField& u, const fem::OwnedField& v) const
   {

@@ -24,8 +24,7 @@ using tissue::Tangent;
 
 fem::OwnedField inner_forces(const test::Body& body, const fem::OwnedField& u)
 {
-  double scale = 0.0;
-  return {-body.tissue.residual(body.tissue.at_rest(), u, at_rest, scale).value};
+  return {-body.tissue.residual(body.tissue.at_rest(), u, at_rest).value};
 }
 
 double energy(const test::Body& body, const fem::OwnedField& u)

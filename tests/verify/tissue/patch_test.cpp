@@ -37,8 +37,7 @@ TEST(Patch, ConstantStrainIsReproduced)
     // The prescribed displacement of the held faces is zero: move the target by hand.
     tissue::TissueState old{exact, body.space.zero()};
     for (int iteration = 0; iteration < (model == tissue::Model::linear ? 1 : 30); ++iteration) {
-      double scale = 0.0;
-      const fem::OwnedField r = body.tissue.residual(old, u, at_rest, scale);
+      const fem::OwnedField r = body.tissue.residual(old, u, at_rest);
       if (iteration == 0) body.tissue.prepare(at_rest);
       u = body.tissue.finish({u, body.tissue.begin(r), std::nullopt}, {}, {});
     }
@@ -55,8 +54,7 @@ TEST(RigidModes, CostNoForce)
     test::Body body({3, 3, 3, Vec3(0.1, 0.1, 0.1), 0.25}, settings);
     const tissue::TissueState old = body.tissue.at_rest();
     const auto force = [&](const fem::OwnedField& u) {
-      double scale = 0.0;
-      const auto r = body.tissue.residual(old, u, at_rest, scale);
+      const auto r = body.tissue.residual(old, u, at_rest);
       return body.comm.max(r.value.cwiseAbs().maxCoeff());
     };
     const Mat3 Q = core::rotation_exp(Vec3(1.0, -2.0, 0.5));

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "tissue/elements_of.hpp"
+
+// What forces of the tets are judged by: definitions for linear_tets.cpp and quadratic_tets.cpp
+// alone.
+namespace trocar::tissue {
+
+/// What a tet adds to the sizes that forces are judged by. Rounded are the displacement gradient,
+/// by ε Σ|∇N_b||u_b|, and where F = 1 + G is formed, F by ε; the stiffest wave modulus turns both
+/// into stress. Rates difference the displacements once and twice.
+template <int N>
+void ElementsOf<N>::add_sizes(std::size_t e, const Kinematics& motion, const Nodal& force,
+                              const Nodal& inertia, ForceSums& sums) const
+{
+  const Material& m = material(e);
+  const Nodal u = nodal(motion.u, e);
+  const Eigen::Matrix<double, N, 1> moved = u.colwise().norm().transpose();
+  const double formed = settings_.model == Model::linear ? 0.0 : 1.0;
+  const double damped = 1.0 + 2.0 * m.rayleigh_stiffness * motion.rates.velocity;
+  const double modulus = m.lambda() + 2.0 * m.mu();
+  Eigen::Matrix<double, N, 1> rounding =
+      Eigen::Matrix<double, N, 1>::Constant(2.0 * m.density * volume_[e] / N *
+                                            motion.rates.velocity *
+                                            (motion.rates.acceleration + m.rayleigh_mass))
+          .cwiseProduct(moved);
+  for (std::size_t point = points * e; point < points * (e + 1); ++point) {
+    const Eigen::Matrix<double, N, 1> slope = shapes_[point].gradient.colwise().norm().transpose();
+    rounding += shapes_[point].volume * modulus * (formed + damped * slope.dot(moved)) * slope;
+  }
+  const auto nodes = space_->nodes(e);
+  for (std::size_t a = 0; a < N; ++a) {
+    if (nodes[a] >= space_->owned()) continue;
+    const auto i = static_cast<Eigen::Index>(a);
+    sums.size[nodes[a]] += force.col(i).norm() + inertia.col(i).norm();
+    sums.rounding[nodes[a]] += rounding[i];
+  }
+}
+
+}  // namespace trocar::tissue
