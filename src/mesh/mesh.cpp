@@ -162,6 +162,8 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
 
 void validate(const Mesh& mesh)
 {
+  const std::string mending =
+      ": gmsh -optimize_ho mends it, in a .geo file Mesh.HighOrderOptimize = 2;";
   check_middles(mesh);
   if (mesh.tets.empty())
     throw core::data_error(mesh.file + ": no tetrahedra in any physical volume");
@@ -180,7 +182,7 @@ void validate(const Mesh& mesh)
                            (volume < 0 ? " is inverted"
                             : folded   ? " is folded by its curved edges"
                                        : " is flat") +
-                           " (volume " + core::shown(volume) + " m^3)");
+                           " (volume " + core::shown(volume) + " m^3)" + (folded ? mending : ""));
   }
 }
 

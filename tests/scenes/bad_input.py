@@ -35,7 +35,7 @@ def quadratic_tet(face, moved=None):
 
 refuses("triangle of another order", 65, ["base", "7", "another order"],
         {"-mesh": written("orders.msh", quadratic_tet("2 2 2 2 1 3 2"))})
-refuses("folded tet", 65, ["77", "folded"],
+refuses("folded tet", 65, ["77", "folded", "-optimize_ho", "Mesh.HighOrderOptimize"],
         {"-mesh": written("folded.msh", quadratic_tet("9 2 2 2 1 3 2 7 6 5", (0.5, 0.6, 0.6)))})
 refuses("mesh scale of zero", 64, ["-mesh_scale"], {"-mesh_scale": "0"})
 refuses("unknown surface", 65, ["z9", "did you mean 'z"], {"-fix": "z9"})
