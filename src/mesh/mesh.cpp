@@ -63,10 +63,15 @@ double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   return (b - a).cross(c - a).dot(d - a) / 6.0;
 }
 
-double tet_volume(const Mesh& mesh, int tet)
+double corner_volume(const Mesh& mesh, int tet)
 {
   const auto p = corners(mesh, tet);
   return tet_volume(p[0], p[1], p[2], p[3]);
+}
+
+double tet_volume(const Mesh& mesh, int tet)
+{
+  return mesh.quadratic() ? curved_volume(positions(mesh, tet)) : corner_volume(mesh, tet);
 }
 
 std::array<Vec3, 4> corners(const Mesh& mesh, int tet)
@@ -173,7 +178,7 @@ void validate(const Mesh& mesh)
                              std::to_string(mesh.node_tag[static_cast<std::size_t>(i)]) +
                              " has a coordinate that is not finite");
   for (int t = 0; t < mesh.tet_count(); ++t) {
-    const double volume = tet_volume(mesh, t);
+    const double volume = corner_volume(mesh, t);
     const double edge = longest_edge(corners(mesh, t));
     const bool folded = volume > 0.0 && smallest_jacobian(positions(mesh, t)) <= 0.0;
     if (volume > 1e-12 * edge * edge * edge && !folded) continue;
@@ -193,7 +198,6 @@ Quality quality(const Mesh& mesh)
   report.shortest_edge = report.smallest;
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const auto p = corners(mesh, t);
-    const double volume = tet_volume(mesh, t);
     double squares = 0.0;
     for (const auto& [a, b] : tet_edges) {
       const double edge = (p[b] - p[a]).norm();
@@ -201,9 +205,9 @@ Quality quality(const Mesh& mesh)
       report.shortest_edge = std::min(report.shortest_edge, edge);
       report.longest_edge = std::max(report.longest_edge, edge);
     }
-    const double q = 6.0 * std::sqrt(2.0) * volume / std::pow(squares / 6.0, 1.5);
+    const double q = 6.0 * std::sqrt(2.0) * corner_volume(mesh, t) / std::pow(squares / 6.0, 1.5);
     report.mean += q / mesh.tet_count();
-    report.volume += volume;
+    report.volume += tet_volume(mesh, t);
     if (q < report.smallest) {
       report.smallest = q;
       report.worst_tag = mesh.elem_tag[static_cast<std::size_t>(t)];

@@ -73,7 +73,10 @@ struct Mesh
 
 /// Signed volume [m³] of the tet with corners a, b, c, d.
 double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+/// Volume [m³] of a tet of the mesh, its edges as curved as they are: exact.
 double tet_volume(const Mesh& mesh, int tet);
+/// Signed volume [m³] of the straight tet between its corners.
+double corner_volume(const Mesh& mesh, int tet);
 
 /// Barycentric coordinates (sum 1) of p in the tet with the given corners.
 Eigen::Vector4d barycentric(const std::array<Vec3, 4>& corner, const Vec3& p);
@@ -99,12 +102,13 @@ void broadcast(Mesh& mesh, const base::Comm& comm);
 /// nodes without volume. Throws Failure (65) naming the element tag.
 void validate(const Mesh& mesh);
 
-/// Figures of the quality report. quality = 6√2 V / (rms edge)³, 1 for a regular tet.
+/// Figures of the quality report. quality = 6√2 V / (rms edge)³, 1 for a regular tet; of curved
+/// tets that of the straight ones between their corners, edges likewise.
 struct Quality
 {
   double smallest = 0, mean = 0;
   long long worst_tag = 0;
-  double volume = 0;                           ///< [m³]
+  double volume = 0;                           ///< [m³], curved where the edges are
   double shortest_edge = 0, longest_edge = 0;  ///< [m]
 };
 Quality quality(const Mesh& mesh);

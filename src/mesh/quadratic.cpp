@@ -191,6 +191,21 @@ Eigen::Vector4d local_coordinates(const TetPositions& x, const Vec3& p)
   return straight;
 }
 
+double curved_volume(const TetPositions& x)
+{
+  const auto p = corners_of(x);
+  if (is_straight(x)) return tet_volume(p[0], p[1], p[2], p[3]);
+  // Degree 3 (Zienkiewicz and Taylor 2000, table 9.2): the middle and four points around it.
+  constexpr double middle = -4.0 / 5.0, around = 9.0 / 20.0;
+  double mean = middle * jacobian(x, Eigen::Vector4d::Constant(0.25)).determinant();
+  for (int a = 0; a < 4; ++a) {
+    Eigen::Vector4d at = Eigen::Vector4d::Constant(1.0 / 6.0);
+    at[a] = 0.5;
+    mean += around * jacobian(x, at).determinant();
+  }
+  return mean / 6.0;
+}
+
 double smallest_jacobian(const TetPositions& x)
 {
   if (is_straight(x)) return 1.0;

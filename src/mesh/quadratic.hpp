@@ -54,6 +54,10 @@ Eigen::Vector4d local_coordinates(const TetPositions& x, const Vec3& p);
 /// True when all middles are in the middle.
 bool is_straight(const TetPositions& x);
 
+/// Volume [m³] of the tet with these node positions: the integral of the Jacobian determinant, a
+/// cubic, exactly; negative where the corners are turned over.
+double curved_volume(const TetPositions& x);
+
 /// Smallest Jacobian determinant of the map over that of the straight tet, at corners and
 /// integration points: 1 for straight tets, not positive for folded ones.
 double smallest_jacobian(const TetPositions& x);
