@@ -17,6 +17,19 @@ std::vector<std::string> surface_names(const Mesh& mesh)
   return names;
 }
 
+/// No group of that kind has the name: one of these was meant, any of them where it is a volume.
+core::Failure no_group(const Mesh& mesh, const std::string& kind, const std::string& name,
+                       const std::vector<std::string>& names)
+{
+  const bool volume =
+      std::find(mesh.volumes.begin(), mesh.volumes.end(), name) != mesh.volumes.end();
+  if (!volume)
+    return core::data_error(mesh.file + ": no physical " + kind + " '" + name + "'" +
+                            core::did_you_mean(name, names));
+  return core::data_error(mesh.file + ": '" + name + "' is a volume, a physical " + kind +
+                          " is wanted: " + (names.empty() ? "there is none" : core::join(names)));
+}
+
 template <class Array>
 void broadcast_rows(std::vector<Array>& rows, const base::Comm& comm)
 {
@@ -108,8 +121,7 @@ const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name)
 {
   for (const SurfaceGroup& group : mesh.surfaces)
     if (group.name == name) return group;
-  throw core::data_error(mesh.file + ": no physical surface '" + name + "'" +
-                         core::did_you_mean(name, surface_names(mesh)));
+  throw no_group(mesh, "surface", name, surface_names(mesh));
 }
 
 std::vector<int> group_nodes(const Mesh& mesh, const std::string& name)
@@ -125,8 +137,7 @@ std::vector<int> group_nodes(const Mesh& mesh, const std::string& name)
   std::vector<std::string> names = surface_names(mesh);
   for (const PointGroup& group : mesh.points) names.push_back(group.name);
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throw core::data_error(mesh.file + ": no physical surface, curve or point '" + name + "'" +
-                           core::did_you_mean(name, names));
+    throw no_group(mesh, "surface, curve or point", name, names);
   std::vector<int> nodes;
   for (const Face& face : surface_group(mesh, name).faces)
     for (int node : nodes_of(mesh, face)) nodes.push_back(node);

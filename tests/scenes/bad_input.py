@@ -39,6 +39,9 @@ refuses("folded tet", 65, ["77", "folded", "-optimize_ho", "Mesh.HighOrderOptimi
         {"-mesh": written("folded.msh", quadratic_tet("9 2 2 2 1 3 2 7 6 5", (0.5, 0.6, 0.6)))})
 refuses("mesh scale of zero", 64, ["-mesh_scale"], {"-mesh_scale": "0"})
 refuses("unknown surface", 65, ["z9", "did you mean 'z"], {"-fix": "z9"})
+for name, words in (("-fix", {"-fix": "beam"}), ("traction", {"-boundary_beam_traction": "1,0,0"}),
+                    ("displacement", {"-boundary_beam_displacement": "1,0,0"})):
+    refuses(name + " of a volume", 65, ["'beam' is a volume", "x0, x1, y0, y1, z0, z1"], words)
 refuses("bad axes", 64, ["-fix", "z0:q"], {"-fix": "z0:q"})
 refuses("unknown boundary surface", 65, ["bottom"], {"-boundary_bottom_traction": "1,0,0"})
 refuses("unknown volume in an override", 64, ["-tissue_liver_young", "did you mean"],

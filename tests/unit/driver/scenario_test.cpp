@@ -164,6 +164,11 @@ TEST_F(ScenarioTest, ReadsSupportsAndLoads)
   ASSERT_EQ(boundary.tractions.size(), 1U);
   EXPECT_EQ(boundary.tractions[0].value, Vec3(0, 50, 0));
   expect_refused_option({{"fix", "z0:w"}}, "axes are letters of xyz");
+  for (const char* option : {"fix", "boundary_core_traction", "boundary_core_displacement"})
+    expect_refusal({{option, option == std::string("fix") ? "core" : "0,0,1"}},
+                   core::ExitCode::data, "'core' is a volume");
+  expect_refusal({{"cavities", "pocket"}, {"cavity_surface", "core"}}, core::ExitCode::data,
+                 "'core' is a volume");
   expect_refused_option({{"boundary_z1_curve", curve}}, "neither displacement nor traction");
 }
 

@@ -23,5 +23,33 @@ TEST(Groups, UnknownNamesAreRefusedWithTheNearest)
   }
 }
 
+// Supports and loads take surfaces: one that names a volume is told which there are.
+TEST(Groups, AVolumeInTheirPlaceIsAnsweredWithAllOfThem)
+{
+  mesh::Mesh mesh = test::block({});
+  mesh.points.push_back({"pin", {0}, {}});
+  const auto line = [&](const std::function<void()>& look) -> std::string {
+    try {
+      look();
+    } catch (const core::Failure& failure) {
+      EXPECT_EQ(failure.code(), core::ExitCode::data);
+      return failure.what();
+    }
+    return "nothing failed";
+  };
+  const std::string surface = line([&] { mesh::surface_group(mesh, "beam"); });
+  const std::string any = line([&] { mesh::group_nodes(mesh, "beam"); });
+  for (const std::string& text : {surface, any}) {
+    EXPECT_NE(text.find("'beam' is a volume"), std::string::npos) << text;
+    for (const mesh::SurfaceGroup& group : mesh.surfaces)
+      EXPECT_NE(text.find(group.name), std::string::npos) << text;
+  }
+  EXPECT_EQ(surface.find("pin"), std::string::npos) << surface;
+  EXPECT_NE(any.find("pin"), std::string::npos) << any;
+  mesh.surfaces.clear();
+  EXPECT_NE(line([&] { mesh::surface_group(mesh, "beam"); }).find("there is none"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace trocar
