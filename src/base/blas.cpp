@@ -4,7 +4,12 @@
 // after petscsys.h, on which it leans
 #include <petscblaslapack.h>
 
+#include <dlfcn.h>
+
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <memory>
 #include <vector>
 
 #include "core/stopwatch.hpp"
@@ -89,11 +94,29 @@ double blas_rate()
   std::vector<double> c(n * n, 0.0);
   double best = 0.0;
   for (int k = 0; k < repeats; ++k) {
-    const core::Stopwatch watch;
+    const core::ProcessorStopwatch watch;
     BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &zero, c.data(), &n);
     best = std::max(best, 2.0 * n * n * n / std::max(watch.seconds(), 1e-9));
   }
   return best;
+}
+
+std::string blas_library()
+{
+  Dl_info found{};
+  void* product = dlsym(RTLD_DEFAULT, "dgemm_");
+  if (!product || dladdr(product, &found) == 0 || !found.dli_fname) return {};
+  const std::unique_ptr<char, decltype(&std::free)> file(realpath(found.dli_fname, nullptr),
+                                                         &std::free);
+  return file ? file.get() : found.dli_fname;
+}
+
+bool slow_blas(double rate, const std::string& library)
+{
+  constexpr double sensible = 8e9;  // reference BLAS does 6 Gflop/s, OpenBLAS 40 to 110
+  const auto named = [&](const char* name) { return library.find(name) != std::string::npos; };
+  constexpr std::array fast{"openblas", "mkl", "blis", "armpl", "libsci"};
+  return rate < sensible && std::none_of(fast.begin(), fast.end(), named);
 }
 
 }  // namespace trocar::base

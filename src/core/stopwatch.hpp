@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
 namespace trocar::core {
 
@@ -15,6 +16,22 @@ class Stopwatch
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Processor time of this thread since construction: stands still while others have the processor.
+class ProcessorStopwatch
+{
+ public:
+  double seconds() const { return now() - start_; }
+
+ private:
+  static double now()
+  {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  double start_ = now();
 };
 
 }  // namespace trocar::core

@@ -8,11 +8,6 @@
 #include "driver/provenance.hpp"
 
 namespace trocar::driver {
-namespace {
-
-constexpr double sensible_blas_rate = 8e9;  ///< reference BLAS does 6 Gflop/s, OpenBLAS 40 to 110
-
-}  // namespace
 
 Log::Log(const Simulation& simulation) : simulation_(&simulation) {}
 
@@ -42,12 +37,13 @@ void Log::set_up(double seconds) const
   std::printf("ranks %d, tissue solver %s, set-up %.2f s\n", simulation_->space().comm().size(),
               solver.c_str(), seconds);
   const double rate = base::blas_rate();
+  const std::string library = base::blas_library();
   std::printf("dense products %.0f Gflop/s\n", 1e-9 * rate);
-  if (rate < sensible_blas_rate)
+  if (base::slow_blas(rate, library))
     std::printf(
-        "warning: the BLAS is slow (reference BLAS, or a busy machine): install "
-        "libopenblas0-serial, and set OMP_THREAD_LIMIT=1 and, on AVX-512 processors, "
-        "OPENBLAS_CORETYPE=SkylakeX\n");
+        "warning: the BLAS is slow (%s): install libopenblas0-serial, and set OMP_THREAD_LIMIT=1 "
+        "and, on AVX-512 processors, OPENBLAS_CORETYPE=SkylakeX\n",
+        library.c_str());
   if (simulation_->cavities()) cavities(*simulation_->cavities());
   for (const std::string& warning : scenario.warnings)
     std::printf("warning: %s\n", warning.c_str());

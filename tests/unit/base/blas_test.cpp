@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "core/stopwatch.hpp"
 
 namespace trocar::base {
 namespace {
@@ -68,6 +73,37 @@ TEST(DenseProducts, OfNothingAreNothingOrZero)
   EXPECT_EQ(product(part(none, 0, 0), some).rows(), 0);
   EXPECT_EQ(product(part(empty, 0, 4), MatX(0, 3)), MatX(MatX::Zero(4, 3)));
   EXPECT_EQ(gram(MatX(0, 2)), MatX(MatX::Zero(2, 2)));
+}
+
+TEST(Library, IsTheFileThatTheProductIsIn)
+{
+  const std::string library = blas_library();
+  EXPECT_TRUE(std::filesystem::is_regular_file(library)) << library;
+  EXPECT_FALSE(std::filesystem::is_symlink(library)) << library;
+}
+
+TEST(Library, IsSlowOnlyWhenItIsNotTheMachine)
+{
+  const std::string debian = "/usr/lib/x86_64-linux-gnu/";
+  EXPECT_TRUE(slow_blas(5e9, debian + "blas/libblas.so.3.11.0"));
+  EXPECT_TRUE(slow_blas(5e9, ""));
+  EXPECT_FALSE(slow_blas(50e9, debian + "blas/libblas.so.3.11.0"));  // whatever it is
+  EXPECT_FALSE(slow_blas(5e9, debian + "openblas-serial/libblas.so.3"));
+}
+
+// Waiting, for a processor or for anything else, is not in the rate.
+TEST(Library, IsTimedByTheProcessor)
+{
+  const core::Stopwatch wall;
+  const core::ProcessorStopwatch processor;
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_GT(wall.seconds(), 0.099);
+  EXPECT_LT(processor.seconds(), 0.05);
+  double sum = 0.0;
+  const core::ProcessorStopwatch work;
+  for (int k = 0; work.seconds() < 0.02; ++k) sum += std::sin(k);
+  EXPECT_GE(work.seconds(), 0.02);
+  EXPECT_TRUE(std::isfinite(sum));
 }
 
 }  // namespace
