@@ -90,20 +90,22 @@ void Log::step(int number, const State& state, const StepReport& report)
     cutting_ -= needle.coupling.cutting_work;
   }
   if (lines_++ % 40 == 0) {
-    std::printf("%6s %10s %10s %6s %6s %10s %12s ", "step", "time [s]", "depth [mm]", "rows",
-                "iters", "resid [m]", "base [N]");
+    std::printf("%6s %10s %11s %10s %6s %6s %10s %12s ", "step", "time [s]", "travel [mm]",
+                "depth [mm]", "rows", "iters", "resid [m]", "base [N]");
     if (!report.cavities.empty()) std::printf("%12s ", "p [Pa]");
     std::printf("%8s\n", "ETA [s]");
   }
+  double travel = state.needles.empty() ? 0.0 : state.needles.front().travel;
   double depth = 0.0, force = 0.0;
+  for (const needle::NeedleState& needle : state.needles) travel = std::max(travel, needle.travel);
   for (const NeedleReport& needle : report.needles) {
     depth = std::max(depth, needle.depth);
     force = std::max(force, needle.base.force.norm());
   }
   const double end = simulation_->scenario().time.end;
   const double eta = state.t > 0.0 ? watch_.seconds() * (end - state.t) / state.t : std::nan("");
-  std::printf("%6d %10.4f %10.3f %6d %6d %10.2e %12.5f ", number, state.t, 1e3 * depth, report.rows,
-              report.iterations, report.residual, force);
+  std::printf("%6d %10.4f %11.3f %10.3f %6d %6d %10.2e %12.5f ", number, state.t, 1e3 * travel,
+              1e3 * depth, report.rows, report.iterations, report.residual, force);
   if (!report.cavities.empty()) std::printf("%12.2f ", report.cavities.front().pressure);
   if (std::isfinite(eta))
     std::printf("%8.1f\n", eta);

@@ -56,6 +56,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
     const std::string at = "needle/" + needle.name + "/";
     series.insert(series.end(), {{at + "tip", 3, "m"},
                                  {at + "depth", 0, "m"},
+                                 {at + "travel", 0, "m"},
                                  {at + "base_force", 3, "N"},
                                  {at + "base_moment", 3, "N m"},
                                  {at + "shaft_friction", 0, "N"},
@@ -134,18 +135,17 @@ void append_work(const Simulation& simulation, const StepReport& report, double 
     row.push_back({value});
 }
 
-std::vector<std::vector<double>> history_row(const Simulation& simulation, const State& state,
-                                             const StepReport& report, double build_seconds,
-                                             double seconds)
+void append_needles(const State& state, const StepReport& report,
+                    std::vector<std::vector<double>>& row)
 {
-  std::vector<std::vector<double>> row{{state.t}};
-  for (std::size_t i = 0; i < simulation.needles().size(); ++i) {
+  for (std::size_t i = 0; i < state.needles.size(); ++i) {
     const NeedleReport& needle = report.needles[i];
     const auto& points = state.insertions[i].points;
     const auto slipping =
         std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.stuck; });
     row.insert(row.end(), {components(needle.tip),
                            {needle.depth},
+                           {state.needles[i].travel},
                            components(needle.base.force),
                            components(needle.base.moment),
                            {needle.coupling.shaft_friction},
@@ -156,6 +156,14 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
                            {static_cast<double>(points.size())},
                            {static_cast<double>(slipping)}});
   }
+}
+
+std::vector<std::vector<double>> history_row(const Simulation& simulation, const State& state,
+                                             const StepReport& report, double build_seconds,
+                                             double seconds)
+{
+  std::vector<std::vector<double>> row{{state.t}};
+  append_needles(state, report, row);
   append_cavities(state, report, row);
   if (simulation.scenario().output.energy) {
     const EnergyAccount& e = state.energy;

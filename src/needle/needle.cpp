@@ -34,13 +34,15 @@ Shaft Needle::straight(const Pose& base) const
 NeedleState Needle::initial() const
 {
   const std::vector<Vec3> still(static_cast<std::size_t>(settings_.elements) + 1, Vec3::Zero());
-  return {straight(settings_.motion.at(0.0)), still, still};
+  return {straight(settings_.motion.at(0.0)), still, still, 0.0};
 }
 
 NeedleState Needle::predict(const NeedleState& old, double t) const
 {
   const Pose base = settings_.motion.at(t);
   NeedleState next = old;
+  const Vec3 along = 0.5 * (old.shaft.R.front().col(0) + base.R.col(0));
+  next.travel += along.dot(base.x - old.shaft.x.front());
   if (settings_.model == Model::rigid) {
     next.shaft = straight(base);
     return next;

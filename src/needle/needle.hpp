@@ -34,6 +34,7 @@ struct NeedleState
   Shaft shaft;
   std::vector<Vec3> v;  ///< nodal velocity [m/s]
   std::vector<Vec3> w;  ///< nodal angular velocity [rad/s]
+  double travel = 0.0;  ///< advance of the base along its own axis since the start [m]
 
   bool finite() const;
 };
@@ -74,7 +75,7 @@ class Needle
 
   NeedleState initial() const;
   /// The old shape carried rigidly to the base pose at time t: where a step starts to iterate.
-  /// Its tip is the tip that cuts.
+  /// Its tip is the tip that cuts; its travel is that of the step's end.
   NeedleState predict(const NeedleState& old, double t) const;
   Linearised linearise(const NeedleState& old, const NeedleState& iterate,
                        const core::TimeStep& step) const;

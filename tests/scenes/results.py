@@ -29,7 +29,7 @@ with h5py.File(os.path.join(folder, "run.h5")) as run:
     check(rows == 51, "one history row per step and one for the start")
     check(np.allclose(run["history/time"], 0.02 * np.arange(51), atol=1e-12), "times are n h")
     needle = run["history/needle/needle"]
-    for name, shape in [("tip", (rows, 3)), ("depth", (rows,)), ("base_force", (rows, 3)),
+    for name, shape in [("tip", (rows, 3)), ("depth", (rows,)), ("travel", (rows,)), ("base_force", (rows, 3)),
                         ("base_moment", (rows, 3)), ("shaft_friction", (rows,)),
                         ("tip_force", (rows,))]:
         check(needle[name].shape == shape, f"needle/{name} has shape {shape}")

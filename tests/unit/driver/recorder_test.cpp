@@ -61,12 +61,14 @@ TEST(Recorder, WritesARowOfEveryHistoryInEveryStep)
     const std::vector<double> time = run.dataset("/history/time").values;
     ASSERT_EQ(time.size(), 3U);
     EXPECT_EQ(time[2], 0.04);
-    for (const char* name : {"depth", "punctures", "points", "slipping", "shaft_friction"})
+    for (const char* name :
+         {"depth", "travel", "punctures", "points", "slipping", "shaft_friction"})
       EXPECT_EQ(run.dataset(std::string("/history/needle/needle/") + name).shape[0], 3U) << name;
     const test::Dataset tip = run.dataset("/history/needle/needle/tip");
     EXPECT_EQ(tip.shape, (std::vector<std::size_t>{3, 3}));
     EXPECT_NEAR(tip.values[0], 0.03, 1e-12);
     EXPECT_NEAR(tip.values[6], 0.03 + 0.02 * 0.04, 1e-12);  // at its velocity
+    EXPECT_NEAR(run.dataset("/history/needle/needle/travel").values[2], 0.02 * 0.04, 1e-15);
     EXPECT_EQ(run.dataset("/history/boundary/z1/force").units, "N");
     EXPECT_EQ(run.dataset("/history/step_seconds").values.back(), 0.5);
     EXPECT_GT(run.dataset("/history/constraint/rows").values.back(), 3.0);
