@@ -1,5 +1,7 @@
 #include "driver/boundary_options.hpp"
 
+#include <algorithm>
+
 #include "core/csv.hpp"
 #include "driver/option_source.hpp"
 #include "mesh/quadratic.hpp"
@@ -10,6 +12,7 @@ namespace {
 using core::Options;
 using core::Vec3;
 
+/// A group that is named again is fixed along all axes named with it: one support.
 std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
 {
   std::vector<tissue::BoundaryConditions::Fixed> fixed;
@@ -24,7 +27,12 @@ std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
         one.axes |= 1U << (axis - 'x');
       }
     }
-    fixed.push_back(one);
+    const auto known = std::find_if(fixed.begin(), fixed.end(),
+                                    [&](const auto& other) { return other.group == one.group; });
+    if (known == fixed.end())
+      fixed.push_back(one);
+    else
+      known->axes |= one.axes;
   }
   return fixed;
 }

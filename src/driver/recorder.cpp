@@ -18,6 +18,14 @@ void add_energy_series(const Scenario& scenario, std::vector<io::Series>& series
       series.push_back({std::string("energy/") + name, 0, "J"});
 }
 
+void add_holder_series(const Scenario& scenario, std::vector<io::Series>& series)
+{
+  for (const auto& tool : scenario.tissue.boundary.displacements)
+    series.push_back({"boundary/" + tool.group + "/force", 3, "N"});
+  for (const auto& support : scenario.tissue.boundary.fixed)
+    series.push_back({"fix/" + support.group + "/force", 3, "N"});
+}
+
 void add_cavity_series(const Scenario& scenario, std::vector<io::Series>& series)
 {
   for (const auto& cavity : scenario.cavities.cavities) {
@@ -33,8 +41,6 @@ void add_cavity_series(const Scenario& scenario, std::vector<io::Series>& series
     series.insert(series.end(),
                   {{at + "flow", 0, "m^3/s"}, {at + "moved", 0, "m^3"}, {at + "state", 0, "1"}});
   }
-  for (const auto& tool : scenario.tissue.boundary.displacements)
-    series.push_back({"boundary/" + tool.group + "/force", 3, "N"});
 }
 
 void add_compare_series(const Scenario& scenario, std::vector<io::Series>& series)
@@ -68,6 +74,7 @@ std::vector<io::Series> series_of(const Scenario& scenario)
                                  {at + "slipping", 0, "1"}});
   }
   add_cavity_series(scenario, series);
+  add_holder_series(scenario, series);
   add_energy_series(scenario, series);
   series.insert(series.end(), {{"constraint/rows", 0, "1"},
                                {"constraint/rank", 0, "1"},
@@ -119,7 +126,6 @@ void append_cavities(const State& state, const StepReport& report,
   for (const cavity::EdgeState& edge : state.cavities.edge)
     for (double value : {edge.flow, edge.moved, edge.needle_in ? 2.0 : edge.pierced ? 1.0 : 0.0})
       row.push_back({value});
-  for (const Vec3& force : report.tools) row.push_back(components(force));
 }
 
 /// What the step took.
@@ -165,6 +171,8 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
   std::vector<std::vector<double>> row{{state.t}};
   append_needles(state, report, row);
   append_cavities(state, report, row);
+  for (const auto* forces : {&report.holders.tools, &report.holders.supports})
+    for (const Vec3& force : *forces) row.push_back(components(force));
   if (simulation.scenario().output.energy) {
     const EnergyAccount& e = state.energy;
     for (double value :

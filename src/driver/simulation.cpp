@@ -67,7 +67,9 @@ StepResult Simulation::initial_state()
     result.report.cavities = cavities_->accept(result.state->cavities, state.tissue.u,
                                                cavities_->shape(state.tissue.u), {});
   }
-  result.report.tools.assign(scenario_.tissue.boundary.displacements.size(), Vec3::Zero());
+  const tissue::BoundaryConditions& boundary = scenario_.tissue.boundary;
+  result.report.holders.tools.assign(boundary.displacements.size(), Vec3::Zero());
+  result.report.holders.supports.assign(boundary.fixed.size(), Vec3::Zero());
   return result;
 }
 
@@ -224,9 +226,10 @@ void Simulation::accept(const State& old, const State& past, const core::TimeSte
                         const Pass& pass, const cavity::Shape& walls, State& next,
                         StepReport& report) const
 {
-  if (!scenario_.tissue.boundary.displacements.empty())
-    report.tools =
-        tissue_.tool_forces(past.tissue, next.tissue.u, now, all_forces(pass, next, walls, now));
+  const tissue::BoundaryConditions& boundary = scenario_.tissue.boundary;
+  if (!boundary.displacements.empty() || !boundary.fixed.empty())
+    report.holders =
+        tissue_.holder_forces(past.tissue, next.tissue.u, now, all_forces(pass, next, walls, now));
   if (cavities_) {
     const cavity::Shape shape = cavities_->exact() ? walls : cavities_->shape(next.tissue.u);
     report.cavities = cavities_->accept(next.cavities, next.tissue.u, shape, now);

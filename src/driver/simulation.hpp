@@ -75,8 +75,8 @@ struct StepReport
 {
   std::vector<NeedleReport> needles;
   std::vector<cavity::CavityReport> cavities;
-  std::vector<Vec3> tools;   ///< force of every prescribed displacement on the tissue [N]
-  int pressure_updates = 0;  ///< of frozen cavities
+  tissue::HolderForces holders;            ///< of prescribed displacements and supports
+  int pressure_updates = 0;                ///< of frozen cavities
   int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
   double residual = 0.0;                   ///< worst of the step [m]
   double unbalanced = 0.0;                 ///< tissue::Balance::worst at the end of the step

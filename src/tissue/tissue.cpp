@@ -21,7 +21,7 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
   for (const Traction& traction : settings_.boundary.tractions)
     traction_.push_back(
         traction_load(mesh::surface_group(mesh, traction.surface), traction.value, mesh, space));
-  if (!settings_.boundary.displacements.empty()) find_tools();
+  find_holders();
 }
 
 void Tissue::assemble(const Configuration& at, const core::Rates& rate)

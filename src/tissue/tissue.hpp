@@ -61,6 +61,13 @@ struct Work
   double damped = 0.0;    ///< by Rayleigh damping
 };
 
+/// Forces on the tissue [N], equal on every rank, by what holds it: prescribed displacements and
+/// supports, as the boundary conditions list them.
+struct HolderForces
+{
+  std::vector<Vec3> tools, supports;
+};
+
 /// The deformable bodies: one or more volumes of the mesh in one operator
 ///   A = M/(h h̄) + B/h + K,  B = αM + βK   (static: A = K)    [N/m].
 class Tissue
@@ -134,10 +141,10 @@ class Tissue
   Balance balance(const TissueState& past, const OwnedField& u, const TimeStep& step,
                   const OwnedField& more);
 
-  /// Forces [N] by which every prescribed displacement of the boundary conditions holds the tissue
-  /// (x, y, z each), `more` being those of rows and cavities. Costs the elements there. Collective.
-  std::vector<Vec3> tool_forces(const TissueState& old, const OwnedField& u, const TimeStep& step,
-                                const OwnedField& more) const;
+  /// Forces by which prescribed displacements and supports hold the tissue, `more` [N] being those
+  /// of rows and cavities. Costs the elements there. Collective.
+  HolderForces holder_forces(const TissueState& old, const OwnedField& u, const TimeStep& step,
+                             const OwnedField& more) const;
 
   /// In file order, equal on every rank. Only on request: an element loop, and all tets on every
   /// rank. Collective.
@@ -216,7 +223,7 @@ class Tissue
   /// Norm of what need not be balanced: a part of the sizes, and what rounding leaves [N].
   /// Collective.
   double least_rest(const Sizes& sizes, double part) const;
-  void find_tools();
+  void find_holders();
   OwnedField external(const TimeStep& step) const;
 
   const mesh::Mesh* mesh_;
@@ -239,9 +246,9 @@ class Tissue
   bool dropped_ = false;  ///< not to the exact one in this step
   OwnedField weight_;     ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
-  /// Dofs that a prescribed displacement holds: owned dof and which condition.
-  std::vector<std::pair<Eigen::Index, std::size_t>> tool_dofs_;
-  std::vector<std::size_t> tool_elements_;  ///< that touch them
+  /// Owned dofs that are held, and by which displacement or, after these, support.
+  std::vector<std::pair<Eigen::Index, std::size_t>> held_dofs_;
+  std::vector<std::size_t> held_elements_;  ///< that touch them
   /// One per distinct pair of rates for linear tissue. Else one, filled again when these or any
   /// rotation change.
   std::vector<Operator> operators_;

@@ -1,48 +1,68 @@
 #include <cmath>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "tissue/tissue.hpp"
 
-// Prescribed displacements as tools: plates, clamps, single nodes, and the forces they take.
+// What holds the tissue: tools (prescribed displacements of plates, clamps, single nodes) and
+// supports, and the forces they take.
 namespace trocar::tissue {
 
-/// A dof that two conditions hold belongs to the later one, whose value it takes.
-void Tissue::find_tools()
+/// A dof that two displacements hold belongs to the later one, whose value it takes; one that a
+/// displacement and supports hold to the displacement, one of several supports to the first.
+void Tissue::find_holders()
 {
   std::map<Eigen::Index, std::size_t> owner;
-  for (std::size_t k = 0; k < settings_.boundary.displacements.size(); ++k) {
-    const PrescribedDisplacement& tool = settings_.boundary.displacements[k];
-    for (int node : mesh::group_nodes(*mesh_, tool.group)) {
+  std::vector<bool> held(static_cast<std::size_t>(space_->owned()), false);
+  const auto hold = [&](const std::string& group, const auto& take) {
+    for (int node : mesh::group_nodes(*mesh_, group)) {
       const int local = space_->owned_local(node);
       for (int axis = 0; local >= 0 && axis < 3; ++axis)
-        if (!std::isnan(tool.value[axis])) owner[3 * local + axis] = k;
+        if (take(axis, 3 * local + axis)) held[static_cast<std::size_t>(local)] = true;
     }
-  }
-  tool_dofs_.assign(owner.begin(), owner.end());
+  };
+  const auto& tools = settings_.boundary.displacements;
+  const auto& supports = settings_.boundary.fixed;
+  for (std::size_t k = 0; k < tools.size(); ++k)
+    hold(tools[k].group, [&](int axis, Eigen::Index dof) {
+      if (std::isnan(tools[k].value[axis])) return false;
+      owner[dof] = k;
+      return true;
+    });
+  for (std::size_t k = 0; k < supports.size(); ++k)
+    hold(supports[k].group, [&](int axis, Eigen::Index dof) {
+      return (supports[k].axes >> axis & 1U) && owner.emplace(dof, tools.size() + k).second;
+    });
+  held_dofs_.assign(owner.begin(), owner.end());
+  if (held_dofs_.empty()) return;
   for (std::size_t e = 0; e < space_->tets(); ++e)
-    for (int node : space_->nodes(e)) {
-      const auto at = owner.lower_bound(3 * node);
-      if (at == owner.end() || at->first > 3 * node + 2) continue;
-      tool_elements_.push_back(e);
-      break;
-    }
+    for (int node : space_->nodes(e))
+      if (node < space_->owned() && held[static_cast<std::size_t>(node)]) {
+        held_elements_.push_back(e);
+        break;
+      }
 }
 
-std::vector<Vec3> Tissue::tool_forces(const TissueState& old, const OwnedField& u,
-                                      const TimeStep& step, const OwnedField& more) const
+HolderForces Tissue::holder_forces(const TissueState& old, const OwnedField& u,
+                                   const TimeStep& step, const OwnedField& more) const
 {
-  Configuration at;
-  elements_->configure_for(tool_elements_, space_->with_ghosts(u), at);
-  const OwnedField held = forces_of(tool_elements_, old, u, at, step);
-  const std::size_t count = settings_.boundary.displacements.size();
+  // Linear tissue is configured the same everywhere.
+  Configuration here;
+  const bool linear = settings_.model == Model::linear;
+  if (!linear) elements_->configure_for(held_elements_, space_->with_ghosts(u), here);
+  const OwnedField held = forces_of(held_elements_, old, u, linear ? at_ : here, step);
+  const std::size_t tools = settings_.boundary.displacements.size();
+  const std::size_t count = tools + settings_.boundary.fixed.size();
   core::VecX sums = core::VecX::Zero(3 * static_cast<Eigen::Index>(count));
-  for (const auto& [dof, tool] : tool_dofs_)
-    sums[3 * static_cast<Eigen::Index>(tool) + dof % 3] -= held.value[dof] + more.value[dof];
+  for (const auto& [dof, holder] : held_dofs_)
+    sums[3 * static_cast<Eigen::Index>(holder) + dof % 3] -= held.value[dof] + more.value[dof];
   space_->comm().sum(sums);
-  std::vector<Vec3> tools;
+  HolderForces found;
   for (std::size_t k = 0; k < count; ++k)
-    tools.emplace_back(sums.segment<3>(3 * static_cast<Eigen::Index>(k)));
-  return tools;
+    (k < tools ? found.tools : found.supports)
+        .emplace_back(sums.segment<3>(3 * static_cast<Eigen::Index>(k)));
+  return found;
 }
 
 }  // namespace trocar::tissue

@@ -39,6 +39,8 @@ with h5py.File(os.path.join(folder, "run.h5")) as run:
         check(run["history/" + name].shape == (rows,), f"{name} has a row per step")
     check(np.allclose(needle["tip"][:, 0], np.minimum(0.02 * run["history/time"][:], 0.03)),
           "the rigid tip is where the base put it")
+    check(np.allclose(needle["travel"], needle["tip"][:, 0], atol=1e-14), "and so is the travel of the base")
+    check(run["history/fix/z0/force"].shape == (rows, 3), "the support has its force")
     check(np.allclose(needle["base_force"][:, 0], needle["shaft_friction"][:], atol=1e-12),
           "a straight rigid needle: axial base force = shaft friction")
     depth = needle["depth"][:]

@@ -70,6 +70,10 @@ TEST(Recorder, WritesARowOfEveryHistoryInEveryStep)
     EXPECT_NEAR(tip.values[6], 0.03 + 0.02 * 0.04, 1e-12);  // at its velocity
     EXPECT_NEAR(run.dataset("/history/needle/needle/travel").values[2], 0.02 * 0.04, 1e-15);
     EXPECT_EQ(run.dataset("/history/boundary/z1/force").units, "N");
+    const test::Dataset support = run.dataset("/history/fix/z0/force");
+    EXPECT_EQ(support.shape, (std::vector<std::size_t>{3, 3}));
+    EXPECT_EQ(support.units, "N");
+    EXPECT_LT(support.values[8], 0.0);  // the tissue is pulled upwards
     EXPECT_EQ(run.dataset("/history/step_seconds").values.back(), 0.5);
     EXPECT_GT(run.dataset("/history/constraint/rows").values.back(), 3.0);
     EXPECT_GT(

@@ -157,6 +157,9 @@ TEST_F(ScenarioTest, ReadsSupportsAndLoads)
   ASSERT_EQ(boundary.fixed.size(), 2U);
   EXPECT_EQ(boundary.fixed[0].axes, 7U);
   EXPECT_EQ(boundary.fixed[1].axes, 5U);
+  const auto again = read({{"fix", "z0:x,x0,z0:z"}}).tissue.boundary.fixed;
+  ASSERT_EQ(again.size(), 2U);  // a group is one support
+  EXPECT_EQ(again[0].axes, 5U);
   ASSERT_EQ(boundary.displacements.size(), 1U);
   EXPECT_TRUE(std::isnan(boundary.displacements[0].value.x()));
   EXPECT_EQ(boundary.displacements[0].value.z(), -0.002);

@@ -39,8 +39,8 @@ double loop_work(Model model, int n)
   };
   for (int k = 1; k <= 3 * n; ++k) {
     const auto force = [&](std::size_t tool, int axis) {
-      return 0.5 * (run.reports[static_cast<std::size_t>(k)].tools[tool][axis] +
-                    run.reports[static_cast<std::size_t>(k - 1)].tools[tool][axis]);
+      return 0.5 * (run.reports[static_cast<std::size_t>(k)].holders.tools[tool][axis] +
+                    run.reports[static_cast<std::size_t>(k - 1)].holders.tools[tool][axis]);
     };
     work += -force(0, 2) * (at(k, 0) - at(k - 1, 0)) + force(1, 0) * (at(k, 1) - at(k - 1, 1));
   }
@@ -71,7 +71,7 @@ TEST(CavityEnergy, ToolStiffnessIsSymmetric)
       scenario.time.end = 2.0;
       scenario.tissue.boundary.displacements[0].value.z() *= down;
       scenario.tissue.boundary.displacements[1].value.x() *= sideways;
-      const std::vector<Vec3> tools = test::run(scenario).reports.back().tools;
+      const std::vector<Vec3> tools = test::run(scenario).reports.back().holders.tools;
       return Eigen::Vector2d(-tools[0].z(), tools[1].x());
     };
     const auto slope = [&](const Eigen::Vector2d& way) -> Eigen::Vector2d {

@@ -102,7 +102,7 @@ TEST(Follower, AgreesWithDenseNewton)
   const VecX forces = dense.K * dense.u;
   Vec3 plate = Vec3::Zero();
   for (int node : mesh::group_nodes(scenario.mesh, "z1")) plate += forces.segment<3>(3 * node);
-  EXPECT_LT((result.report.tools[0] - plate).norm(), 1e-8 * plate.norm());
+  EXPECT_LT((result.report.holders.tools[0] - plate).norm(), 1e-8 * plate.norm());
 }
 
 // Corotational tissue with a follower cavity: the same with a factor in every step and with old

@@ -22,8 +22,8 @@ TEST(Gravity, WeightOfTheFluidArrives)
     // Only a follower's weight is that of the deformed cavity; of constant volume they are the
     // same.
     const double weight = 9810.0 * 2.7e-5;
-    EXPECT_NEAR(report.tools[0].z(), weight, 1e-6 * weight);
-    EXPECT_NEAR(report.tools[0].x(), 0.0, 1e-6 * weight);
+    EXPECT_NEAR(report.holders.tools[0].z(), weight, 1e-6 * weight);
+    EXPECT_NEAR(report.holders.tools[0].x(), 0.0, 1e-6 * weight);
   }
 }
 

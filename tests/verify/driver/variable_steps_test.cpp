@@ -123,7 +123,7 @@ TEST(VariableSteps, MassThatIsDriven)
   const double mass = 0.016;
   for (int k = 0; k <= finest; ++k)
     exact[k] = mass * amplitude * omega * omega * std::cos(omega * k * unit);
-  const Answer force = [](const driver::StepReport& report) { return report.tools[0].x(); };
+  const Answer force = [](const driver::StepReport& report) { return report.holders.tools[0].x(); };
   // Steps stay far above the time that waves take: the block starts unstrained.
   expect_orders("driven mass", scenario, force, exact, 4);
   // Halves of halves: BDF2 is of order 1 in some of these steps, and never wild.
