@@ -93,25 +93,31 @@ core::VecX ElementsOf<N>::dilatation_rates(const Configuration& at, const Ghoste
   return theta;
 }
 
+/// θ at the points of a tet, with stiffness damping.
+template <int N>
+void ElementsOf<N>::put_dilatations(std::size_t e, const Configuration& at,
+                                    const Kinematics& motion, core::VecX& theta) const
+{
+  const double beta = material(e).rayleigh_stiffness;
+  const Nodal u = nodal(motion.u, e);
+  for (std::size_t point = points * e; point < points * (e + 1); ++point) {
+    const Mat3& R = at.R[point];
+    const Mat3 G = gradient(u, point);
+    double& mine = theta[static_cast<Eigen::Index>(point)];
+    mine = energy::dilatation(settings_.model, R, G);
+    if (beta > 0.0 && motion.v.value.size() > 0)
+      mine += beta * energy::dilatation_gradient(settings_.model, R, G)
+                         .cwiseProduct(gradient(nodal(motion.v, e), point))
+                         .sum();
+  }
+}
+
 /// λθ at the points, with stiffness damping, averaged as the elements do [Pa].
 template <int N>
 core::VecX ElementsOf<N>::pressures(const Configuration& at, const Kinematics& motion) const
 {
   core::VecX theta(static_cast<Eigen::Index>(shapes_.size()));
-  for (std::size_t e = 0; e < tets(); ++e) {
-    const double beta = material(e).rayleigh_stiffness;
-    const Nodal u = nodal(motion.u, e);
-    for (std::size_t point = points * e; point < points * (e + 1); ++point) {
-      const Mat3& R = at.R[point];
-      const Mat3 G = gradient(u, point);
-      double& mine = theta[static_cast<Eigen::Index>(point)];
-      mine = energy::dilatation(settings_.model, R, G);
-      if (beta > 0.0 && motion.v.value.size() > 0)
-        mine += beta * energy::dilatation_gradient(settings_.model, R, G)
-                           .cwiseProduct(gradient(nodal(motion.v, e), point))
-                           .sum();
-    }
-  }
+  for (std::size_t e = 0; e < tets(); ++e) put_dilatations(e, at, motion, theta);
   return pressure_of(theta);
 }
 
@@ -171,7 +177,12 @@ template <int N>
 void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
                                   const Kinematics& motion, ForceSums& sums) const
 {
-  const core::VecX p = averaged() ? pressures(at, motion) : core::VecX();
+  core::VecX p;
+  if (averaged()) {  // right at these tets alone
+    core::VecX theta = core::VecX::Zero(static_cast<Eigen::Index>(shapes_.size()));
+    for (std::size_t e : with_patches(tets)) put_dilatations(e, at, motion, theta);
+    p = pressure_of(theta);
+  }
   for (std::size_t e : tets) add_tet_forces(e, at, motion, p, sums);
 }
 

@@ -90,15 +90,17 @@ void ElementsOf<N>::lump_masses()
   for (auto& [e, mass] : curved_mass_) lump(mass);
 }
 
-/// F of `count` points, one per lane; the last one fills the rest.
+/// F of points from the first-th on, one per lane; the last of `count` fills the rest.
 template <int N>
-void ElementsOf<N>::gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
+template <class PointOf>
+void ElementsOf<N>::gather_gradients(const GhostedField& u, const PointOf& point_of,
+                                     std::size_t first, std::size_t count,
                                      core::PolarBatch::Matrix& F) const
 {
   constexpr int width = core::PolarBatch::width;
   std::array<core::PolarBatch::Lanes, 3 * N> values, gradients;
   for (int lane = 0; lane < width; ++lane) {
-    const std::size_t point = first + std::min(static_cast<std::size_t>(lane), count - 1);
+    const std::size_t point = point_of(first + std::min(static_cast<std::size_t>(lane), count - 1));
     const double* g = shapes_[point].gradient.data();
     const auto nodes = space_->nodes(point / points);
     for (std::size_t a = 0; a < N; ++a) {
@@ -129,6 +131,29 @@ int ElementsOf<N>::folded(const GhostedField& u) const
   return -1;
 }
 
+/// Rotations of `count` points, the k-th being point_of(k); identities from where a tet is turned
+/// inside out, and false.
+template <int N>
+template <class PointOf>
+bool ElementsOf<N>::rotate(const GhostedField& u, const PointOf& point_of, std::size_t count,
+                           std::vector<Mat3>& R) const
+{
+  constexpr std::size_t width = core::PolarBatch::width;
+  core::PolarBatch batch;
+  for (std::size_t first = 0; first < count; first += width) {
+    const std::size_t lanes = std::min(width, count - first);
+    gather_gradients(u, point_of, first, lanes, batch.matrix());
+    if (!(batch.determinant() > 0.0).all()) {
+      for (std::size_t k = first; k < count; ++k) R[point_of(k)] = Mat3::Identity();
+      return false;
+    }
+    batch.rotate();
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      R[point_of(first + lane)] = batch.get(static_cast<int>(lane));
+  }
+  return true;
+}
+
 template <int N>
 bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
 {
@@ -139,19 +164,9 @@ bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
   }
   at.R.resize(count);
   at.G.resize(exact() ? count : 0);
-  constexpr std::size_t width = core::PolarBatch::width;
-  core::PolarBatch batch;
-  for (std::size_t first = 0; first < count; first += width) {
-    const std::size_t lanes = std::min(width, count - first);
-    gather_gradients(u, first, lanes, batch.matrix());
-    if (!(batch.determinant() > 0.0).all()) {
-      std::fill(at.R.begin() + static_cast<std::ptrdiff_t>(first), at.R.end(), Mat3::Identity());
-      return false;
-    }
-    batch.rotate();
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-      at.R[first + lane] = batch.get(static_cast<int>(lane));
-  }
+  if (!rotate(
+          u, [](std::size_t k) { return k; }, count, at.R))
+    return false;
   if (!exact()) return true;
   for (std::size_t point = 0; point < count; ++point)
     at.G[point] = gradient(nodal(u, point / points), point);
@@ -160,18 +175,32 @@ bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
 }
 
 template <int N>
+std::vector<std::size_t> ElementsOf<N>::with_patches(const std::vector<std::size_t>& tets) const
+{
+  if (!patches_) return tets;
+  std::vector<bool> wanted(volume_.size(), false);
+  for (std::size_t e : tets)
+    for (int v : patches_->of_tet[e]) {
+      if (v < 0) continue;
+      const auto patch = static_cast<std::size_t>(v);
+      for (std::size_t k = patches_->start[patch]; k < patches_->start[patch + 1]; ++k)
+        wanted[patches_->member[k].tet] = true;
+    }
+  std::vector<std::size_t> found;
+  for (std::size_t e = 0; e < wanted.size(); ++e)
+    if (wanted[e]) found.push_back(e);
+  return found;
+}
+
+template <int N>
 void ElementsOf<N>::configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                                   Configuration& at) const
 {
-  if (averaged() || exact()) {
-    configure(u, at);
-    return;
-  }
   at.R.assign(shapes_.size(), Mat3::Identity());
-  if (settings_.model == Model::linear) return;
-  for (std::size_t e : tets)
-    for (std::size_t point = points * e; point < points * (e + 1); ++point)
-      at.R[point] = core::polar_rotation(Mat3::Identity() + gradient(nodal(u, e), point));
+  if (settings_.model != Model::corotational) return;
+  const std::vector<std::size_t> here = with_patches(tets);
+  const auto point_of = [&](std::size_t k) { return points * here[k / points] + k % points; };
+  rotate(u, point_of, points * here.size(), at.R);
 }
 
 template <int N>

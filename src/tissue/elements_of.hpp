@@ -85,15 +85,23 @@ class ElementsOf final : public Elements
   {
     return &mass_form(e) == &straight_mass_ ? volume_[e] : 1.0;
   }
-  void gather_gradients(const GhostedField& u, std::size_t first, std::size_t count,
-                        core::PolarBatch::Matrix& G) const;
+  template <class PointOf>
+  void gather_gradients(const GhostedField& u, const PointOf& point_of, std::size_t first,
+                        std::size_t count, core::PolarBatch::Matrix& F) const;
+  template <class PointOf>
+  bool rotate(const GhostedField& u, const PointOf& point_of, std::size_t count,
+              std::vector<Mat3>& R) const;
   void measure_curved_masses(const mesh::Mesh& mesh);
   void lump_masses();
   /// λθ at the points, of point values of θ averaged as the elements do [Pa].
   core::VecX pressure_of(const core::VecX& theta) const;
   void add_averaged(const core::VecX& theta, core::VecX& p) const;
   core::VecX dilatation_rates(const Configuration& at, const GhostedField& d) const;
+  void put_dilatations(std::size_t e, const Configuration& at, const Kinematics& motion,
+                       core::VecX& theta) const;
   core::VecX pressures(const Configuration& at, const Kinematics& motion) const;
+  /// These tets and those that share a dilatation with them.
+  std::vector<std::size_t> with_patches(const std::vector<std::size_t>& tets) const;
   void add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
                       const core::VecX& p, ForceSums& sums) const;
   void add_sizes(std::size_t e, const Kinematics& motion, const Nodal& force, const Nodal& inertia,
