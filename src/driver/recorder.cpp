@@ -229,18 +229,18 @@ std::vector<io::Field> coupling_fields(const Simulation& simulation, const State
   return {id, position, lambda, stuck, tributary};
 }
 
-/// Nodes of every needle's axis, so that a picture needs no model of the needle.
-std::vector<io::Field> shaft_fields(const Simulation& simulation, const State& state)
+/// Every needle's axis, so that a picture needs no model of the needle.
+std::vector<io::Curve> needle_curves(const Simulation& simulation, const State& state)
 {
-  std::vector<io::Field> fields;
+  std::vector<io::Curve> curves;
   for (std::size_t n = 0; n < state.needles.size(); ++n) {
-    io::Field axis{
-        "/needle/" + simulation.scenario().needles[n].name + "/axis", 3, "m", {}, false, false};
+    const needle::NeedleSettings& needle = simulation.scenario().needles[n];
+    io::Curve curve{"/needle/" + needle.name, {}, needle.section.outer};
     for (const Vec3& x : state.needles[n].shaft.x)
-      axis.values.insert(axis.values.end(), x.data(), x.data() + 3);
-    fields.push_back(std::move(axis));
+      curve.points.insert(curve.points.end(), x.data(), x.data() + 3);
+    curves.push_back(std::move(curve));
   }
-  return fields;
+  return curves;
 }
 
 }  // namespace
@@ -271,7 +271,6 @@ void Recorder::record(const Simulation& simulation, const State& state, const St
       fields.push_back(nodal_field("/velocity", "m/s", space.gather(state.tissue.v)));
     for (auto& field : stress_fields(simulation, state)) fields.push_back(std::move(field));
     for (auto& field : coupling_fields(simulation, state, u)) fields.push_back(std::move(field));
-    for (auto& field : shaft_fields(simulation, state)) fields.push_back(std::move(field));
   }
   base::on_root(space.comm(), [&] {
     results_->append_history(history_row(simulation, state, report, build_seconds, seconds),
@@ -279,7 +278,7 @@ void Recorder::record(const Simulation& simulation, const State& state, const St
     if (fields.empty()) return;
     std::vector<std::string> notes;
     if (report.nonunique) notes.emplace_back("lambda_nonunique");
-    results_->write_fields(step, state.t, fields, notes);
+    results_->write_fields(step, state.t, fields, needle_curves(simulation, state), notes);
   });
 }
 

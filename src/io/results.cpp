@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
-#include <sstream>
 
 #include "core/failure.hpp"
 #include "mesh/quadratic.hpp"
@@ -14,13 +12,6 @@ namespace trocar::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string step_file(int step)
-{
-  std::ostringstream name;
-  name << "fields/step_" << std::setw(6) << std::setfill('0') << step << ".h5";
-  return name.str();
-}
 
 void prepare_folder(const std::string& folder)
 {
@@ -66,9 +57,7 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Proven
     : folder_((prepare_folder(folder), folder)),
       run_(base::H5File::create(folder + "/run.h5")),
       series_(series),
-      nodes_(mesh.x.size()),
-      tets_(mesh.tets.size()),
-      nodes_per_tet_(mesh.nodes_per_tet())
+      mesh_{mesh.x.size(), mesh.tets.size(), mesh.nodes_per_tet()}
 {
   run_.attribute("/", "schema", std::string("trocar-1"));
   write_mesh(mesh);
@@ -91,7 +80,7 @@ void Results::write_mesh(const mesh::Mesh& mesh)
   for (int t = 0; t < mesh.tet_count(); ++t)
     for (int node : mesh::nodes_of(mesh, t)) tets.push_back(node);
   run_.write("/mesh/coordinates", x, 3, "m");
-  run_.write("/mesh/tets", tets, static_cast<std::size_t>(nodes_per_tet_), "1");
+  run_.write("/mesh/tets", tets, static_cast<std::size_t>(mesh_.nodes_per_tet), "1");
   run_.write("/mesh/region", std::vector<std::int64_t>(mesh.region.begin(), mesh.region.end()), 0,
              "1");
   run_.write("/mesh/node_tag",
@@ -112,65 +101,31 @@ void Results::append_history(const std::vector<std::vector<double>>& row,
 }
 
 void Results::write_fields(int step, double time, const std::vector<Field>& fields,
-                           const std::vector<std::string>& notes)
+                           const std::vector<Curve>& curves, const std::vector<std::string>& notes)
 {
   const std::string path = folder_ + "/" + step_file(step);
   auto file = base::H5File::create(path + ".tmp");
+  XdmfFrame frame{step, time, {}, {}};
   for (const Field& field : fields) {
     if (field.integer)
       file.write(field.name, as_integers(field.values), field.columns, field.units);
     else
       file.write(field.name, field.values, field.columns, field.units);
+    if (field.nodal || field.cell)
+      frame.attributes.push_back({field.name, field.columns, field.cell});
+  }
+  for (const Curve& curve : curves) {
+    const std::size_t points = curve.points.size() / 3;
+    file.write(curve.name + "/axis", curve.points, 3, "m");
+    file.write(curve.name + "/radius", std::vector<double>(points, curve.radius), 0, "m");
+    frame.curves.push_back({curve.name, points});
   }
   file.write("/time", std::vector<double>{time}, 0, "s");
   for (const std::string& note : notes) file.attribute("/", note, std::int64_t{1});
   file.close();
   rename_into_place(path + ".tmp", path);
-
-  Frame frame{step, time, {}};
-  for (const Field& field : fields)
-    if (field.nodal || field.cell)
-      frame.shown.push_back(
-          {field.name, field.columns, field.units, {}, field.nodal, false, field.cell});
   frames_.push_back(std::move(frame));
-  write_xdmf();
-}
-
-void Results::write_xdmf() const
-{
-  std::ostringstream x;
-  x << std::setprecision(17);
-  x << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
-    << "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  const auto item = [&](const std::string& shape, const char* type, const std::string& where) {
-    x << "<DataItem Dimensions=\"" << shape << "\" NumberType=\"" << type
-      << "\" Precision=\"8\" Format=\"HDF\">" << where << "</DataItem>";
-  };
-  const std::string nodes = std::to_string(nodes_), tets = std::to_string(tets_);
-  for (const Frame& frame : frames_) {
-    x << "   <Grid Name=\"step_" << frame.step << "\">\n    <Time Value=\"" << frame.time
-      << "\"/>\n    <Topology TopologyType=\""
-      << (nodes_per_tet_ == 10 ? "Tetrahedron_10" : "Tetrahedron") << "\" NumberOfElements=\""
-      << tets << "\">";
-    item(tets + " " + std::to_string(nodes_per_tet_), "Int", "run.h5:/mesh/tets");
-    x << "</Topology>\n    <Geometry GeometryType=\"XYZ\">";
-    item(nodes + " 3", "Float", "run.h5:/mesh/coordinates");
-    x << "</Geometry>\n    <Attribute Name=\"region\" Center=\"Cell\">";
-    item(tets, "Int", "run.h5:/mesh/region");
-    x << "</Attribute>\n";
-    for (const Field& field : frame.shown) {
-      const std::string& rows = field.cell ? tets : nodes;
-      const char* type = field.columns == 0 ? "Scalar" : field.columns == 3 ? "Vector" : "Matrix";
-      x << "    <Attribute Name=\"" << field.name.substr(1) << "\" AttributeType=\"" << type
-        << "\" Center=\"" << (field.cell ? "Cell" : "Node") << "\">";
-      item(field.columns ? rows + " " + std::to_string(field.columns) : rows, "Float",
-           step_file(frame.step) + ":" + field.name);
-      x << "</Attribute>\n";
-    }
-    x << "   </Grid>\n";
-  }
-  x << "  </Grid>\n </Domain>\n</Xdmf>\n";
-  write_atomically(folder_ + "/run.xdmf", x.str());
+  write_atomically(folder_ + "/run.xdmf", xdmf_text(mesh_, frames_));
 }
 
 void Results::write_table(const std::string& path, const std::vector<double>& values,

@@ -8,6 +8,7 @@
 #include "base/comm.hpp"
 #include "base/hdf5.hpp"
 #include "core/ledger.hpp"
+#include "io/xdmf.hpp"
 #include "mesh/mesh.hpp"
 
 namespace trocar::io {
@@ -32,6 +33,15 @@ struct Field
   bool cell = false;     ///< by tet; shown like nodal fields
 };
 
+/// A curve of a field file, shown by ParaView: written as NAME/axis (points, 3) [m] and, the same
+/// at every point so that filters find it, NAME/radius (points) [m].
+struct Curve
+{
+  std::string name;            ///< of a group in the file
+  std::vector<double> points;  ///< row-major [m]
+  double radius;               ///< [m]
+};
+
 /// What a run was: text and word lists below /provenance.
 struct Provenance
 {
@@ -53,7 +63,7 @@ class Results
 
   /// A field file for this time; `step` counts accepted steps.
   void write_fields(int step, double time, const std::vector<Field>& fields,
-                    const std::vector<std::string>& notes);
+                    const std::vector<Curve>& curves, const std::vector<std::string>& notes);
   /// A dataset of its own in run.h5, once the run is over.
   void write_table(const std::string& path, const std::vector<double>& values,
                    const std::string& units);
@@ -61,20 +71,11 @@ class Results
 
  private:
   void write_mesh(const mesh::Mesh& mesh);
-  void write_xdmf() const;
-
-  struct Frame
-  {
-    int step;
-    double time;
-    std::vector<Field> shown;  ///< names and shapes only
-  };
   std::string folder_;
   base::H5File run_;
   std::vector<Series> series_;
-  std::size_t nodes_, tets_;
-  int nodes_per_tet_;
-  std::vector<Frame> frames_;
+  XdmfMesh mesh_;
+  std::vector<XdmfFrame> frames_;
 };
 
 /// Writes text to a temporary name, syncs it and renames it over `path`. Throws Failure (74).

@@ -80,14 +80,24 @@ for step in steps:
 
 root = ElementTree.parse(os.path.join(folder, "run.xdmf")).getroot()
 items = list(root.iter("DataItem"))
-check(len(list(root.iter("Time"))) == len(steps), "run.xdmf has every step")
+check(len(list(root.iter("Time"))) == 2 * len(steps), "run.xdmf has every step, of tissue and needle")
+check([grid.get("Name") for grid in root.find("Domain")] == ["tissue", "needle_needle"],
+      "run.xdmf: the tissue and the needle, each over time")
 for item in items:
+    shape = tuple(int(n) for n in item.get("Dimensions").split())
+    if item.get("Format") == "XML":
+        check(item.text.split() == [str(k) for k in range(np.prod(shape))], "a polyline takes its points in order")
+        continue
     file, dataset = item.text.split(":")
     with h5py.File(os.path.join(folder, file)) as target:
-        shape = tuple(int(n) for n in item.get("Dimensions").split())
         if target[dataset].shape != shape:
             check(False, f"run.xdmf: {item.text} has shape {target[dataset].shape}, not {shape}")
-check(len(items) == 5 * len(steps), "run.xdmf: mesh, region, displacement, velocity per step")
+check(len(items) == (5 + 3) * len(steps),
+      "run.xdmf: mesh, region, displacement, velocity, and of the needle order, axis, radius per step")
+with h5py.File(os.path.join(folder, "fields", steps[-1])) as file:
+    axis, radius = file["needle/needle/axis"][:], file["needle/needle/radius"][:]
+    check(np.allclose(radius, 0.0005) and len(radius) == len(axis) == 21, "the needle has its radius at every node")
+    check(np.isclose(np.linalg.norm(axis[-1] - axis[0]), 0.08), "and its length")
 
 # Stress on request: shapes, places in ParaView's file, energy against the work of the plate.
 phantom = options("phantom.opts")

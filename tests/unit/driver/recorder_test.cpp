@@ -111,6 +111,7 @@ TEST(Recorder, WritesTheFieldsThatAreAskedFor)
     EXPECT_EQ(step.dataset("/coupling/id").values.size(), points.size());
     EXPECT_EQ(step.dataset("/coupling/lambda").shape, (std::vector<std::size_t>{points.size(), 3}));
     EXPECT_EQ(step.dataset("/needle/needle/axis").shape[0], 13U);  // nodes of 12 elements
+    EXPECT_EQ(step.dataset("/needle/needle/radius").values, (std::vector<double>(13, 0.0005)));
     EXPECT_EQ(test::H5Reader("recorder_fields/run.h5").dataset("/history/energy/rest").shape[0],
               1U);
   });

@@ -66,7 +66,7 @@ TEST(Results, OfAQuadraticMeshHaveTenNodesPerTet)
   shape.quadratic = true;
   const mesh::Mesh mesh = test::block(shape);
   with_results("results_quadratic", mesh,
-               [&](Results& results) { results.write_fields(0, 0.0, {}, {}); });
+               [&](Results& results) { results.write_fields(0, 0.0, {}, {}, {}); });
   base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
     const test::Dataset tets = test::H5Reader("results_quadratic/run.h5").dataset("/mesh/tets");
     EXPECT_EQ(tets.shape, (std::vector<std::size_t>{6, 10}));
@@ -111,7 +111,7 @@ TEST(Results, FieldsAreInTheOrderOfTheMesh)
                           {"/von_mises", 0, "Pa", std::vector<double>(body.mesh.tets.size(), 2.0),
                            false, false, true},
                           {"/coupling/id", 0, "1", {1e6, 7.0}, false, true, false}},
-                         {"lambda_nonunique"});
+                         {}, {"lambda_nonunique"});
   });
   base::on_root(body.comm, [&] {
     const test::H5Reader step("results_fields/fields/step_000003.h5");
@@ -128,6 +128,43 @@ TEST(Results, FieldsAreInTheOrderOfTheMesh)
   });
 }
 
+/// How often a text stands in another.
+int count(const std::string& text, const std::string& piece)
+{
+  int found = 0;
+  for (auto at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++found;
+  return found;
+}
+
+// A curve is a collection of its own beside the tissue, at the same times.
+TEST(Results, ShowCurvesBesideTheTissue)
+{
+  with_results("results_curves", test::block({1, 1, 1}), [](Results& results) {
+    for (int n : {0, 4})
+      results.write_fields(n, 0.5 * n, {},
+                           {{"/needle/left", {0, 0, 0, 0.1 * n, 0, 0, 1, 0, 0}, 0.002},
+                            {"/needle/right", {0, 1, 0, 1, 1, 0}, 0.001}},
+                           {});
+  });
+  base::on_root(base::Comm(MPI_COMM_WORLD), [] {
+    const test::H5Reader step("results_curves/fields/step_000004.h5");
+    const test::Dataset axis = step.dataset("/needle/left/axis");
+    EXPECT_EQ(axis.shape, (std::vector<std::size_t>{3, 3}));
+    EXPECT_EQ(axis.values[3], 0.4);
+    EXPECT_EQ(axis.units, "m");
+    EXPECT_EQ(step.dataset("/needle/left/radius").values, (std::vector<double>(3, 0.002)));
+    const std::string shown = test::file_text("results_curves/run.xdmf");
+    for (const char* name : {"tissue", "needle_left", "needle_right"})
+      EXPECT_EQ(count(shown, std::string("<Grid Name=\"") + name + "\" GridType=\"Collection\""), 1)
+          << name;
+    EXPECT_EQ(count(shown, "<Time Value=\"2\"/>"), 3);
+    EXPECT_EQ(count(shown, "\"Polyline\" NodesPerElement=\"3\" NumberOfElements=\"1\""), 2);
+    EXPECT_EQ(count(shown, "fields/step_000004.h5:/needle/left/axis"), 1);
+    EXPECT_EQ(count(shown, "fields/step_000000.h5:/needle/right/radius"), 1);
+    EXPECT_EQ(count(shown, ">0 1 2</DataItem>"), 2);
+  });
+}
+
 TEST(Results, DoNotMixWithFieldsOfAnEarlierRun)
 {
   const mesh::Mesh mesh = test::block({1, 1, 1});
@@ -135,7 +172,7 @@ TEST(Results, DoNotMixWithFieldsOfAnEarlierRun)
     fs::remove_all("results_again");
     for (int last : {2, 0}) {
       Results results("results_again", mesh, {}, {{"time", 0, "s"}});
-      for (int step = 0; step <= last; ++step) results.write_fields(step, 0.1 * step, {}, {});
+      for (int step = 0; step <= last; ++step) results.write_fields(step, 0.1 * step, {}, {}, {});
       std::ofstream("results_again/fields/notes.txt") << "of the user";
     }
     EXPECT_TRUE(fs::exists("results_again/fields/step_000000.h5"));
