@@ -65,17 +65,44 @@ MatX barrier(const MatX& S, const Point& p)
   return shifted;
 }
 
+/// What the products of a trial point lack to be neither much smaller nor much larger than they
+/// should be; never much less than that, or the largest of them would rule the direction.
+VecX short_of(const VecX& products, double centre)
+{
+  constexpr double smallest = 0.1, largest = 10.0;
+  const VecX meant = products.cwiseMax(smallest * centre).cwiseMin(largest * centre);
+  return (meant - products).cwiseMax(-largest * centre);
+}
+
 /// Mehrotra: how far the affine step gets says how much to centre, and what it leaves is corrected.
+/// Gondzio (1996): with the same factor it is then corrected again for products that run away over
+/// a longer step, as long as that lengthens it.
 Point corrected_direction(const core::Cholesky& factor, const Point& p, const VecX& dual)
 {
+  constexpr int most = 3;
+  constexpr double reach = 0.3, gain = 0.03;  // of a step more, tried and asked for
   const VecX zero = VecX::Zero(p.x.size());
   const Point affine = direction(factor, p, dual, zero, zero);
   Point trial = p;
   move(trial, affine, longest_step(p, affine));
   const double mu = complementarity(p);
   const double centre = mu * std::pow(complementarity(trial) / mu, 3);
-  return direction(factor, p, dual, centre - affine.x.cwiseProduct(affine.y).array(),
-                   centre + affine.x.cwiseProduct(affine.z).array());
+  VecX target_u = centre - affine.x.cwiseProduct(affine.y).array();
+  VecX target_v = centre + affine.x.cwiseProduct(affine.z).array();
+  Point best = direction(factor, p, dual, target_u, target_v);
+  double step = longest_step(p, best);
+  for (int k = 0; k < most && step < 0.9; ++k) {
+    trial = p;
+    move(trial, best, std::min(step + reach, 1.0));
+    target_u += short_of(trial.u.cwiseProduct(trial.y), centre);
+    target_v += short_of(trial.v.cwiseProduct(trial.z), centre);
+    const Point next = direction(factor, p, dual, target_u, target_v);
+    const double longer = longest_step(p, next);
+    if (longer < step + gain) break;
+    best = next;
+    step = longer;
+  }
+  return best;
 }
 
 /// Moves as far as keeps every product from running ahead of the others: without this the step

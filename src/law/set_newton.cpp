@@ -95,7 +95,9 @@ BoxSolution set_newton(const MatX& S, const VecX& s, const VecX& F, const VecX& 
     const int last_changes = changes;
     changes = differences(sets, next);
     result.finished = changes == 0;
-    if (changes >= last_changes) break;
+    // Far from the answer sets change in crowds, and one set after the other leads nowhere.
+    const bool far = result.factorisations == 1 && 4 * changes > static_cast<int>(x.size());
+    if (far || changes >= last_changes) break;
     sets = next;
   }
   if (!result.finished) return result;
