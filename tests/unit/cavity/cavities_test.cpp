@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "support/body.hpp"
 #include "support/cavity.hpp"
@@ -162,6 +163,55 @@ TEST(CavityNetwork, MovesFluidFromHighPressureToLow)
   EXPECT_NEAR(state.cavity[0].amount, V0 - moved, 1e-13 * V0);
   EXPECT_NEAR(state.cavity[1].amount, V0 + moved, 1e-13 * V0);
   EXPECT_NEAR(reports[0].error, moved / V0, 1e-12);  // the wall has not followed
+}
+
+// Poiseuille's laws: π r h³/(6 μ L) between the needle and its channel, π r⁴/(8 μ L) through the
+// hole it leaves.
+TEST(CavityNetwork, FlowsAlongTheNeedleAndThroughItsHole)
+{
+  Scene scene;
+  EdgeSettings& edge = scene.settings.edges[0];
+  edge.resistance = 0.0;
+  edge.needle = 0;
+  edge.needle_radius = 0.0006;
+  edge.gap = 1e-4;
+  edge.hole_radius = 0.0003;
+  edge.viscosity = 2e-3;
+  edge.length = 0.02;
+  const Cavities cavities = scene.cavities();
+  State state = cavities.start();
+  const double h = 0.1, drop = 400.0, pi = std::numbers::pi;
+  const core::VecX p = Eigen::Vector2d(300.0, -100.0);
+  const auto flow = [&](bool needle_in, bool pierced) {
+    state.edge[0].needle_in = needle_in;
+    state.edge[0].pierced = pierced;
+    return (V0 - cavities.fluid(state, p, {h, h, false}).volume[0]) / h;
+  };
+  const double along = pi * 0.0006 * 1e-12 / (6.0 * 2e-3 * 0.02) * drop;
+  const double through = pi * std::pow(0.0003, 4) / (8.0 * 2e-3 * 0.02) * drop;
+  EXPECT_NEAR(flow(true, true), along, 1e-9 * along);
+  EXPECT_NEAR(flow(false, true), through, 1e-9 * through);
+  EXPECT_NEAR(flow(false, false), 0.0, 1e-9 * through);
+}
+
+// An alarm is of how far the pressure has moved since the start, up or down.
+TEST(CavityAlarm, TellsOfAChangeOfPressure)
+{
+  Scene scene;
+  scene.settings.edges.clear();
+  scene.settings.cavities[0].alarm = 300.0;
+  const Cavities cavities = scene.cavities();
+  State state = cavities.start();
+  const OwnedField u = scene.body.space.zero();
+  const auto alarm = [&](double pressure, const core::TimeStep& now) {
+    state.cavity[0].pressure = pressure;
+    return cavities.accept(state, u, cavities.shape(u), now)[0].alarm;
+  };
+  EXPECT_FALSE(alarm(1000.0, {0.0, 0.1, true}));
+  EXPECT_FALSE(alarm(1299.0, {0.1, 0.1, false}));
+  EXPECT_TRUE(alarm(1301.0, {0.2, 0.1, false}));
+  EXPECT_FALSE(alarm(701.0, {0.3, 0.1, false}));
+  EXPECT_TRUE(alarm(699.0, {0.4, 0.1, false}));
 }
 
 // The tip in the second void opens the edge; its channel is kept when the needle has gone.

@@ -141,6 +141,21 @@ TEST(Wall, WithHolesIsClosedByCaps)
   }
 }
 
+// Quadratic faces of caps are as flat as the holes they close.
+TEST(Wall, OfAQuadraticMeshIsClosedByFlatCaps)
+{
+  const Condition hole = in_box(Vec3(0.0, 0.01, 0.01), Vec3(0.05, 0.03, 0.03));
+  test::BlockShape shape = with_hole(hole);
+  shape.quadratic = true;
+  mesh::Mesh mesh = test::block(shape);
+  test::add_surface(mesh, "wall", hole);
+  const Wall wall(mesh, "wall", true);
+  EXPECT_NEAR(wall.volume(), 0.05 * 0.02 * 0.02, 1e-17);
+  EXPECT_NEAR(wall.area(), 4 * 0.05 * 0.02 + 2 * 0.02 * 0.02, 1e-13);
+  EXPECT_LT(Faces(wall).sum.norm(), 1e-17);
+  EXPECT_EQ(wall.rims().size(), 2U);
+}
+
 // The work of forces at the vertices, the caps' included, is that at the nodes of any rank.
 TEST(Wall, ForcesAreTheAdjointOfPlaces)
 {

@@ -100,5 +100,20 @@ TEST(Network, FlowsAndTheirDerivative)
   EXPECT_LT((flows.conductance - flows.conductance.transpose()).norm(), 1e-15);
 }
 
+// What flows is as dense as where it comes from: that much leaves there and arrives.
+TEST(Network, CarriesTheDensityItComesWith)
+{
+  const law::Edge tube{0, 1, 2.0, false, 0.0, 1.5, 0.8};
+  for (double drop : {3.0, -3.0}) {
+    const VecX p = Eigen::Vector2d(drop, 0.0);
+    const law::Flows flows = law::network_flows({tube}, p);
+    const double density = drop > 0.0 ? 1.5 : 0.8;
+    EXPECT_DOUBLE_EQ(flows.edge[0], 2.0 * drop);
+    EXPECT_DOUBLE_EQ(flows.inflow[0], -density * 2.0 * drop);
+    EXPECT_DOUBLE_EQ(flows.inflow[1], density * 2.0 * drop);
+    EXPECT_DOUBLE_EQ(flows.conductance(0, 0), density * 2.0);
+  }
+}
+
 }  // namespace
 }  // namespace trocar

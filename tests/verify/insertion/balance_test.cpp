@@ -63,6 +63,25 @@ TEST(Balance, ActionEqualsReactionInEquilibrium)
   }
 }
 
+// A plate holds the body and a needle sticks in it beside that plate, where some of the nodes it
+// takes hold of are the plate's: what the holder pushes with is all that the plate feels.
+TEST(Balance, APlateFeelsWhatTheNeedleDoesOnItsNodes)
+{
+  driver::Scenario scenario = test::needle_scenario(plain);
+  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.tissue.boundary.fixed.clear();
+  scenario.tissue.boundary.displacements = {{"z0", Vec3::Zero(), std::nullopt}};
+  scenario.needles[0].motion.entry = Vec3(0, 0.0173, 0.0031);
+  scenario.needles[0].motion.inserted = 0.03;
+  scenario.needles[0].motion.trajectory =
+      core::parse_csv("time,x,y,z\n0,-0.05,0.0173,0.0031\n1,-0.05,0.0173,0.0061\n", "aside.csv");
+  scenario.time.end = 0.04;
+  const test::Run run = test::run(scenario);
+  const Vec3 holder = run.reports.back().needles[0].base.force;
+  EXPECT_GT(holder.norm(), 1e-3);
+  EXPECT_LT((run.reports.back().tools[0] + holder).norm(), 1e-9 * holder.norm());
+}
+
 // A needle row whose nodes are all prescribed has no force; its gap stays and statics converge.
 // Drawn aside where a support holds the tissue: no force closes that gap, and the step says where.
 TEST(Balance, AGapThatASupportHoldsOpenIsRefused)

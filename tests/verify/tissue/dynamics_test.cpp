@@ -36,6 +36,22 @@ TEST(Dynamics, FreeFallAndRayleighDecayAreBackwardEulers)
   }
 }
 
+// A body that glides as a whole at v: ½ m v², and damping by its mass takes α m v² a second.
+TEST(Dynamics, DampingByMassTakesTheEnergyOfMotion)
+{
+  tissue::TissueSettings settings;
+  settings.materials = {{4000.0, 0.3, 1000.0, 3.0, 0.0}};
+  test::Body body({2, 2, 2, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
+  const double h = 0.01, mass = 1.0, square = 0.09 + 0.04 + 0.25;
+  const tissue::TissueState old = body.tissue.at_rest();
+  tissue::TissueState next = old;
+  next.v = test::nodal(body, [](const Vec3&) { return Vec3(0.3, -0.2, 0.5); });
+  const tissue::Work work = body.tissue.work(old, old, next, {h, h, false}, body.space.zero());
+  EXPECT_NEAR(work.kinetic, 0.5 * mass * square, 1e-12);
+  EXPECT_NEAR(work.damped, h * 3.0 * mass * square, 1e-12);
+  EXPECT_NEAR(work.elastic, 0.0, 1e-12);
+}
+
 TEST(Dynamics, PrescribedMotionIsFollowedAndPushesItsNeighbours)
 {
   tissue::TissueSettings settings;

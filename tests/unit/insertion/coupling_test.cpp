@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include "constraint/reduce.hpp"
+#include "insertion/insertion.hpp"
+#include "support/block.hpp"
+
+namespace trocar::insertion {
+namespace {
+
+/// A needle 40 mm deep in a bar of cells of 1 cm, with a point every 12 mm.
+struct Inserted
+{
+  explicit Inserted(const Friction& friction, double fit = 0.0)
+      : mesh(test::block({6, 4, 4, Vec3(0.06, 0.04, 0.04), 0.0})),
+        locator(mesh),
+        u{core::VecX::Zero(3 * mesh.node_count())},
+        tissue(mesh, locator, u),
+        needle(settings()),
+        insertion(mesh, locator, laws(friction, fit)),
+        state(insertion.start(needle))
+  {
+  }
+  static needle::NeedleSettings settings()
+  {
+    needle::NeedleSettings settings;
+    settings.model = needle::Model::rigid;
+    settings.section = {0.0005, 0.0, 2e11, 0.3};
+    settings.motion.entry = Vec3(0.0, 0.0171, 0.0223);
+    settings.motion.length = 0.2;
+    settings.motion.inserted = 0.04;
+    return settings;
+  }
+  static InsertionSettings laws(const Friction& friction, double fit)
+  {
+    InsertionSettings laws{
+        {Placement::spacing, 0.012, 0.3}, {TissueFriction{friction, friction}}, 0.0, 1e-9};
+    if (fit > 0.0) laws.radius_correction = RadiusCorrection{{0.0005}, {2000.0}, {0.4}, fit};
+    return laws;
+  }
+  /// Compliance of the rows in tissue that gives way to every probe by itself [m/N], and the rows.
+  law::Problem problem(double h)
+  {
+    constraint::Set set;
+    rows = insertion.add_rows(state, needle.initial().shaft, tissue, 0, h, set);
+    const solve::Probes probes = set.probes();
+    const auto size = static_cast<Eigen::Index>(probes.size());
+    return constraint::reduce(set, 1e-3 * core::MatX::Identity(size, size), core::VecX::Zero(size),
+                              {});
+  }
+
+  mesh::Mesh mesh;
+  mesh::Locator locator;
+  fem::GlobalField u;
+  Deformed tissue;
+  needle::Needle needle;
+  Insertion insertion;
+  InsertionState state;
+  CouplingRows rows;
+};
+
+// Every point has the path that is nearer to it than to any other: 0, 12, 24 and 36 mm in 40 mm.
+TEST(Tributary, BordersAreHalfWayBetweenThePoints)
+{
+  Inserted one({2.0, 1.0, 0.0});
+  const core::VecX length = one.insertion.tributary_lengths(one.state).rowwise().sum();
+  ASSERT_EQ(length.size(), 4);
+  const Eigen::Vector4d expected(0.006, 0.012, 0.012, 0.01);
+  EXPECT_LT((length - expected).norm(), 1e-12);
+  const law::Problem problem = one.problem(0.01);
+  for (std::size_t k = 0; k < 4; ++k)  // at rest: the static limit
+    EXPECT_NEAR(problem.bound[one.rows.points[k].axial],
+                2.0 * expected[static_cast<Eigen::Index>(k)], 1e-12);
+}
+
+// Dashpot and dry friction act on the same piece of shaft: the tissue gives way to their sum, and
+// with the correction for the needle's radius by more, alike for both.
+TEST(RadiusCorrection, IsSharedByDashpotAndDryFriction)
+{
+  Inserted bare({2.0, 2.0, 50.0}), corrected({2.0, 2.0, 50.0}, 0.5);
+  const double h = 0.01;
+  const law::Problem without = bare.problem(h), with = corrected.problem(h);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int dry = corrected.rows.points[k].axial, viscous = corrected.rows.points[k].viscous;
+    ASSERT_GE(std::min(dry, viscous), 0);
+    const double alone = without.W(dry, dry);
+    EXPECT_NEAR(without.W(viscous, dry), alone, 1e-12 * alone);
+    EXPECT_GT(with.W(dry, dry), 1.001 * alone);
+    EXPECT_NEAR(with.W(viscous, viscous), with.W(dry, dry), 1e-12 * alone);
+    EXPECT_NEAR(with.W(viscous, dry), with.W(dry, dry), 1e-12 * alone);
+  }
+}
+
+}  // namespace
+}  // namespace trocar::insertion
