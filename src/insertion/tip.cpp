@@ -1,6 +1,5 @@
 #include "insertion/tip.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -99,7 +98,7 @@ TipRows add_tip_rows(const TipState& tip, bool on_surface, double limit, double 
   row.kind = law::RowKind::box;
   row.normal = mine.axial;
   row.friction = friction;
-  row.bound = friction * std::max(tip.lambda[2], 0.0);
+  row.bound = 0.0;  // follows the axial force, from its start on
   mine.lateral = set.size();
   aim(end.normal_1, tip.lambda[0]);
   set.add(row);
