@@ -1,0 +1,35 @@
+#include <gtest/gtest.h>
+
+#include "law/solve.hpp"
+#include "support/problem.hpp"
+
+namespace trocar::law {
+namespace {
+
+// Between two answers in which the same rows hold and slip the multipliers change in proportion to
+// the gaps: what `response` says of the first is the difference to the second.
+TEST(Response, IsTheChangeOfTheMultipliers)
+{
+  int slipping = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    Problem problem = test::random_problem(6, 40, seed);
+    problem.normal.assign(problem.kind.size(), -1);
+    if (seed % 2 == 1) problem.softness = VecX::Constant(problem.rows(), 1e-4);
+    const Settings exact{.method = Method::automatic, .tolerance = 1e-13};
+    const Multipliers before = solve(problem, exact);
+    const VecX dg = 1e-6 * VecX::LinSpaced(problem.rows(), -1.0, 2.0);
+    Problem moved = problem;
+    moved.g += dg;
+    const Multipliers after = solve(moved, exact);
+    ASSERT_TRUE(before.converged && after.converged) << before.why << after.why;
+    ASSERT_TRUE(same_states(problem, before.lambda, after.lambda)) << seed;
+    const VecX change = after.lambda - before.lambda;
+    EXPECT_LT((response(problem, before.lambda, dg) - change).norm(), 1e-5 * change.norm()) << seed;
+    for (Eigen::Index i = 2; i < problem.rows(); i += 3)
+      slipping += std::abs(before.lambda[i]) >= problem.bound[i] ? 1 : 0;
+  }
+  EXPECT_GT(slipping, 5);
+}
+
+}  // namespace
+}  // namespace trocar::law
