@@ -164,6 +164,8 @@ TEST(Shaft, IsC1AndProjectionFindsTheNearestPoint)
     const ShaftPoint on = shaft_at(shaft, s);
     const ShaftPoint found = project(shaft, on.x + 0.003 * on.normal_1 - 0.001 * on.normal_2);
     EXPECT_NEAR(found.s, s, 1e-10);
+    const Vec3 along = shaft_at(shaft, s + 5e-7).x - shaft_at(shaft, s - 5e-7).x;
+    EXPECT_LT((on.tangent - along.normalized()).norm(), 1e-7);
     EXPECT_NEAR(on.tangent.dot(on.normal_1), 0.0, 1e-14);
     EXPECT_NEAR(on.normal_1.cross(on.normal_2).dot(on.tangent), 1.0, 1e-14);
   }
