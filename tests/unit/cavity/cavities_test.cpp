@@ -80,6 +80,26 @@ TEST(CavityVolumes, FollowTheWall)
   }
 }
 
+// A curve scales the fluid there was at the start; what has leaked is not scaled with it.
+TEST(CavityAmount, FollowsItsCurveInAnyNumberOfSteps)
+{
+  Scene scene;
+  scene.settings.cavities[0].volume_curve =
+      core::parse_csv("time,factor\n0,1\n1,2\n2,0.5\n", "curve.csv");
+  const Cavities cavities = scene.cavities();
+  const OwnedField u = scene.body.space.zero();
+  State state = cavities.start();
+  state.cavity[0].amount -= 0.1 * V0;
+  double before = 0.0;
+  for (double t : {0.5, 1.0, 1.5, 2.0}) {
+    state = cavities.advance(state, before, t, {}, u);
+    before = t;
+    const double factor = t <= 1.0 ? 1.0 + t : 3.5 - 1.5 * t;
+    EXPECT_NEAR(state.cavity[0].amount, (factor - 0.1) * V0, 1e-12 * V0) << t;
+    EXPECT_NEAR(state.cavity[1].amount, V0, 1e-12 * V0);
+  }
+}
+
 // A closed wall under one pressure has no resultant; the forces work as p dV does.
 TEST(CavityForces, PushTheTissueAwayFromTheFluid)
 {

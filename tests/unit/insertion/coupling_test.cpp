@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "constraint/reduce.hpp"
 #include "insertion/insertion.hpp"
 #include "support/block.hpp"
@@ -70,6 +73,20 @@ TEST(Tributary, BordersAreHalfWayBetweenThePoints)
   for (std::size_t k = 0; k < 4; ++k)  // at rest: the static limit
     EXPECT_NEAR(problem.bound[one.rows.points[k].axial],
                 2.0 * expected[static_cast<Eigen::Index>(k)], 1e-12);
+}
+
+// A line load in a mesh much coarser than the shaft: along it ln(a h/r)/(2πμℓ), across it Kelvin's
+// (3 - 4ν)/(4(1 - ν)) of that; where the mesh is finer than the shaft is thick nothing.
+TEST(RadiusCorrection, IsTheLogarithmOfALineLoad)
+{
+  const double mu = 2000.0, nu = 0.4, r = 0.0005, length = 0.01;
+  const RadiusCorrection correction{{r}, {mu}, {nu}, 0.5};
+  const auto coarse = correction.at(0, 0, 100.0 * r, length);
+  const double line = std::log(50.0) / (2.0 * std::numbers::pi * mu * length);
+  EXPECT_NEAR(coarse.axial, line, 1e-6 * line);
+  EXPECT_NEAR(coarse.lateral, line * 1.4 / 2.4, 1e-6 * line);
+  EXPECT_LT(correction.at(0, 0, 0.2 * r, length).axial, 1e-4 * line);
+  EXPECT_EQ(correction.at(0, 0, 100.0 * r, 0.0).axial, 0.0);
 }
 
 // Dashpot and dry friction act on the same piece of shaft: the tissue gives way to their sum, and
