@@ -120,6 +120,15 @@ TEST(Wall, HoldsWhatIsInsideIt)
   EXPECT_TRUE(holds(Vec3(0.0101, 0.0101, 0.0199)));
   EXPECT_FALSE(holds(Vec3(0.02, 0.02, 0.0201)));
   EXPECT_FALSE(holds(Vec3(0.3, 0.02, 0.015)));
+  // All about, in front of faces, edges and corners.
+  for (double x : {-0.3, 0.0099, 0.0101, 0.0133, 0.0251, 0.0399, 0.0401})
+    for (double y : {0.0099, 0.0101, 0.0213, 0.0299, 0.0301, 0.9})
+      for (double z : {-0.2, 0.0099, 0.0101, 0.0157, 0.0199, 0.0201}) {
+        const Vec3 place(x, y, z);
+        const bool inside =
+            ((place - low).array() > 0.0).all() && ((high - place).array() > 0.0).all();
+        EXPECT_EQ(holds(place), inside) << place.transpose();
+      }
   const core::VecX twice = 2.0 * wall.undeformed();
   EXPECT_TRUE(wall.holds(Vec3(0.0, 0.0, 0.0099), twice));  // where it is now
 }
