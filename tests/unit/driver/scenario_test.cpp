@@ -240,8 +240,11 @@ TEST_F(ScenarioTest, ReadsNeedlesWithTheirOverrides)
                                   {"needle_velocity", "0.01"},
                                   {"needle_depth", "0.02"},
                                   {"needle_right_model", "rigid"},
+                                  {"needle_left_bevel", "0.5235987755982988"},
                                   {"time_end", "1"}});
   ASSERT_EQ(scenario.needles.size(), 2U);
+  EXPECT_NEAR(scenario.needles[0].bevel, std::sqrt(3.0), 1e-12);  // a face at 30° to the axis
+  EXPECT_EQ(scenario.needles[1].bevel, 0.0);
   EXPECT_EQ(scenario.needles[0].name, "left");
   EXPECT_EQ(scenario.needles[0].model, needle::Model::beam);
   EXPECT_EQ(scenario.needles[1].model, needle::Model::rigid);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "driver/error_estimate.hpp"
+#include "driver/locking_gauge.hpp"
 #include "driver/pv_curve.hpp"
 #include "support/cavity.hpp"
 #include "support/hdf5.hpp"
@@ -86,6 +87,24 @@ TEST(PvCurve, HasTheLineOfLeastSquares)
     EXPECT_LT(R2, 0.9999);  // it is a curve
     EXPECT_NEAR(run.dataset("/pv_curve/slope").values[0], xp / xx, 1e-9 * xp / xx);
     EXPECT_NEAR(run.dataset("/pv_curve/r_squared").values[0], R2, 1e-9);
+  });
+}
+
+// Linear tets of tissue that hardly changes its volume lock: their cavity is stiffer than that of
+// quadratic tets that do not, and the gauge says so.
+TEST(LockingGauge, IsHowMuchTooStiffACavityIs)
+{
+  driver::Scenario scenario = test::cavity_scenario(3, 1, cavity::Model::linear);
+  scenario.tissue.materials[0].poisson = 0.49;
+  scenario.output.folder = "gauge_report";
+  scenario.output.quiet = true;
+  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  driver::Recorder recorder(simulation, {}, {});
+  driver::report_locking(simulation, recorder, driver::Log(simulation));
+  recorder.close(simulation);
+  base::on_root(simulation.space().comm(), [&] {
+    const test::H5Reader run("gauge_report/run.h5");
+    EXPECT_GT(run.dataset("/locking_gauge/ratio").values.at(0), 1.5);
   });
 }
 
