@@ -99,6 +99,7 @@ TEST(LockingGauge, IsHowMuchTooStiffACavityIs)
   scenario.output.folder = "gauge_report";
   scenario.output.quiet = true;
   driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  simulation.prepare();
   driver::Recorder recorder(simulation, {}, {});
   driver::report_locking(simulation, recorder, driver::Log(simulation));
   recorder.close(simulation);
