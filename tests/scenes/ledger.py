@@ -114,6 +114,14 @@ for solver in ({}, {"-tissue_ksp_type": "cg", "-tissue_pc_type": "jacobi"},
     for element in ("p1", "p2"):
         folder = completed({**static, **solver, "-tissue_element": element})
         check(histories(folder)["time_linearisations"][-1] == 1, f"linear statics by {solver} {element}: solved once")
+# Points that stick and slip much closer than the elements, turning back: rows that repeat each other.
+close = {**options("close_points.opts"), "-insertion_spacing": "0.0005", "-insertion_friction_dynamic": "6",
+         "-needle_depth": "0.1156", "-needle_hold": "0.03", "-needle_withdraw_velocity": "0.003", "-time_end": "0.35",
+         "-output_fields": '""', "-mesh": structured(
+             "gel_block", *"--nodes 16 8 8 --size 0.15 0.07 0.07 --split 5".split())}
+h = histories(completed(close))
+most, off = h["constraint/iterations"].max(), h["constraint/residual"].max()
+check(most <= 20 and off <= 1e-9, f"close points turning back: {most:.0f} factorisations at most, {off:.1e} m")
 work = ledger(completed(small))
 check(work["surface_passes"] == 0 and work["pressure_updates"] == 0, "no cavity: no pass over a wall")
 phantom = options("phantom.opts")

@@ -32,7 +32,7 @@ for scene in (phantom, pulsing, puncture, frozen):
     scene["-mesh"] = geometry(os.path.splitext(os.path.basename(scene["-mesh"]))[0])
 
 # What a step of turning tissue took, not what it found.
-work = {"compliance/new_probes", "compliance/reused_probes", "compliance/passes",
+work = {"time_linearisations", "compliance/new_probes", "compliance/reused_probes", "compliance/passes",
         "compliance/factor_age", "constraint/iterations",
         "constraint/condition",  # of W with the factor at hand
         "constraint/contraction"}  # a ratio of two changes near round-off

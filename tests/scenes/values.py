@@ -94,6 +94,7 @@ def hollow_block():
 # default): NumPy, with the exact tangent.
 BENT = [
     ("p1", "", 0.946809, 4.506602),
+    ("p2", "", 1.801346, 6.7426919),
     ("p1", "exact", 0.946809, 4.506602),
     ("p2", "exact", 1.801346, 6.7426919),
 ]

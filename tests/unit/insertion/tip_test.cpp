@@ -30,13 +30,14 @@ TEST(TipSupport, SpreadsAsHertzAndTheUniformBallDo)
   const mesh::Locator locator(mesh);
   const double R = 0.011;
   const Vec3 top(0.0193, 0.0211, 0.04), inside(0.0193, 0.0211, 0.0197);
-  const Vec3 normal = Vec3::UnitZ();
-  const constraint::Anchor disc = tip_support(mesh, locator, top, locator.tet_at(top), R, &normal);
+  const core::Mat3 frame = core::frame_along(Vec3::UnitZ());
+  const constraint::Anchor disc =
+      tip_support(mesh, locator, {top, locator.tet_at(top), R}, frame, true);
   const core::Mat3 flat = Vec3(0.2, 0.2, 0.0).asDiagonal();
   EXPECT_NEAR(disc.weight.sum(), 1.0, 1e-12);
   EXPECT_LT((spread(mesh, disc, top) / (R * R) - flat).norm(), 0.012);
   const constraint::Anchor ball =
-      tip_support(mesh, locator, inside, locator.tet_at(inside), R, nullptr);
+      tip_support(mesh, locator, {inside, locator.tet_at(inside), R}, frame, false);
   const core::Mat3 round = Vec3(0.2, 0.2, 0.2).asDiagonal();
   EXPECT_LT((spread(mesh, ball, inside) / (R * R) - round).norm(), 0.015);
 }

@@ -40,7 +40,7 @@ TEST(ErrorReport, IsAPartOfTheEnergyNorm)
   const driver::Log log(simulation);
   driver::report_error(simulation, recorder, log, *start.state);
   recorder.close(simulation);
-  const double work = start.report.tools[0].dot(Vec3(0.002, 0.001, 0.0));
+  const double work = start.report.holders.tools[0].dot(Vec3(0.002, 0.001, 0.0));
   base::on_root(simulation.space().comm(), [&] {
     const test::H5Reader run("error_report/run.h5");
     const double square = sum_of_squares(run.dataset("/error_estimate/tet").values);

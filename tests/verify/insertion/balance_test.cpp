@@ -79,7 +79,7 @@ TEST(Balance, APlateFeelsWhatTheNeedleDoesOnItsNodes)
   const test::Run run = test::run(scenario);
   const Vec3 holder = run.reports.back().needles[0].base.force;
   EXPECT_GT(holder.norm(), 1e-3);
-  EXPECT_LT((run.reports.back().tools[0] + holder).norm(), 1e-9 * holder.norm());
+  EXPECT_LT((run.reports.back().holders.tools[0] + holder).norm(), 1e-9 * holder.norm());
 }
 
 // A needle row whose nodes are all prescribed has no force; its gap stays and statics converge.

@@ -58,7 +58,7 @@ TEST(TwoVolumes, KeepADilatationEach)
     for (double between : at(scenario, u, 0.02))
       EXPECT_NEAR(between, -1e-4 * of_soft / (of_soft + of_stiff), 1e-12);
     const double force = 1e-4 / 0.02 / (of_soft + of_stiff) * 0.02 * 0.02;
-    EXPECT_NEAR(start.report.tools[0].x(), -force, 1e-9 * force);
+    EXPECT_NEAR(start.report.holders.tools[0].x(), -force, 1e-9 * force);
   }
 }
 
