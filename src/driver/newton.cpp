@@ -65,12 +65,13 @@ bool Simulation::enough(const State& past, const State& next, const cavity::Shap
 // The rows turn with the shaft: the gaps of the new geometry must be closed as well.
 bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const
 {
+  constexpr double no_gap = 1e-12;  // [m], of places that are known to a part in 1e14
   const Rows again = coupling_rows(now, next);
   for (int i = 0; i < again.set.size(); ++i) {
     const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
     const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
                       row.relative_softness == 0.0 && pass.mobility[i] > 0.0;
-    if (hard && std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, 1e-9)) return false;
+    if (hard && std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, no_gap)) return false;
   }
   return true;
 }

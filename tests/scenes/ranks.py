@@ -62,7 +62,9 @@ edges = {"-mesh": small_block(), "-tissue_element": "p2", "-tissue_poisson": "0.
          "-insertion_friction_dynamic": "0", "-constraint_direction_max": "3"}
 tight = options("tight.opts")
 for name, settings, tolerance in [
-    ("along edges", edges, 1e-8), ("along edges, tight", {**edges, **tight}, 1e-10),
+    ("along edges", edges, 1e-8),
+    # Its lateral rows have a condition of 7e6: that of rounding is 1e-9.
+    ("along edges, tight", {**edges, **tight, "-time_end": "0.5"}, 1e-8),
     ("gel, tight", {**gel, **tight, "-time_end": "1.2"}, 1e-10),
     ("ties, tight", {**ties, **tight}, 1e-10),
     ("pulsing vessel, tight", {**pulsing, **tight}, 1e-10),

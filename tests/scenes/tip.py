@@ -98,4 +98,17 @@ for step, cutting, model in ((0.15, 0.005, "linear"), (0.1, 0.005, "linear"), (0
     depth[step, cutting, model] = h["needle/n/depth"][-1]
 values = np.array(list(depth.values()))
 check(values.max() - values.min() < 2e-5, f"through a void by steps of any length: {values.min():.5f} to {values.max():.5f} m")
+
+# A needle as long as it is deep stands in the tissue up to its base, which is outside; drawn aside
+# along the surface as well. A millimetre deeper it is in.
+aside = os.path.join(FOLDER, "up_to_the_base.csv")
+with open(aside, "w") as stream:
+    stream.write("time,x,y,z\n0,0,0.0193,0.0171\n1,0,0.0203,0.0171\n")
+stands = {"-mesh": block["-mesh"], "-fix": "z0", "-analysis": "static", "-needles": "n", "-needle_model": "rigid",
+          "-needle_entry": "0,0.0193,0.0171", "-needle_length": "0.03", "-needle_inserted": "0.03",
+          "-time_step": "0.5", "-time_end": "1", "-output_dir": os.path.join(FOLDER, "stands")}
+for name, more in (("rigid", {}), ("beam", {"-needle_model": "beam"}), ("drawn aside", {"-needle_trajectory": aside})):
+    done = run({**stands, **more})
+    check(done.returncode == 0, f"in up to its base, {name}: {done.stderr[-200:]}")
+check(run({**stands, "-needle_inserted": "0.031"}).returncode == 65, "not deeper than its length")
 finish()
