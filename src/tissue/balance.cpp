@@ -21,7 +21,7 @@ core::VecX lengths(const OwnedField& field)
 
 Sizes Tissue::no_sizes() const
 {
-  return {core::VecX::Zero(space_->owned()), core::VecX::Zero(space_->owned()), 0.0};
+  return {core::VecX::Zero(space_->owned()), core::VecX::Zero(space_->owned()), 0.0, {}};
 }
 
 double Tissue::least_rest(const Sizes& sizes, double part) const
@@ -67,6 +67,7 @@ Balance Tissue::balance(const TissueState& past, const OwnedField& u, const Time
   const double all =
       sizes.norms + std::sqrt(sums[1]) + balance.rounded / settings_.newton_tolerance;
   balance.norm = all > 0.0 ? std::sqrt(sums[0]) / all : 0.0;
+  configured_.sizes = std::move(sizes);
   return balance;
 }
 

@@ -31,8 +31,9 @@ struct Balance
 /// What a residual is made of.
 struct Sizes
 {
-  core::VecX size, rounding;  ///< see ForceSums, loads included (owned nodes) [N]
-  double norms = 0.0;         ///< ‖f_ext‖ + ‖f_int‖ + ‖inertia‖ [N]
+  core::VecX size, rounding;   ///< see ForceSums, loads included (owned nodes) [N]
+  double norms = 0.0;          ///< ‖f_ext‖ + ‖f_int‖ + ‖inertia‖ [N]
+  fem::OwnedField internal{};  ///< forces of stress and stiffness damping [N]
 };
 
 }  // namespace trocar::tissue

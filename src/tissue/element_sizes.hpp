@@ -15,7 +15,7 @@ void ElementsOf<N>::add_sizes(std::size_t e, const Kinematics& motion, const Nod
 {
   const Material& m = material(e);
   const Nodal u = nodal(motion.u, e);
-  const Eigen::Matrix<double, N, 1> moved = u.colwise().norm().transpose();
+  const Eigen::Matrix<double, N, 1> moved = u.colwise().template lpNorm<1>().transpose();
   const double formed = settings_.model == Model::linear ? 0.0 : 1.0;
   const double damped = 1.0 + 2.0 * m.rayleigh_stiffness * motion.rates.velocity;
   const double modulus = m.lambda() + 2.0 * m.mu();
@@ -25,7 +25,8 @@ void ElementsOf<N>::add_sizes(std::size_t e, const Kinematics& motion, const Nod
                                             (motion.rates.acceleration + m.rayleigh_mass))
           .cwiseProduct(moved);
   for (std::size_t point = points * e; point < points * (e + 1); ++point) {
-    const Eigen::Matrix<double, N, 1> slope = shapes_[point].gradient.colwise().norm().transpose();
+    const Eigen::Matrix<double, N, 1> slope =
+        shapes_[point].gradient.colwise().template lpNorm<1>().transpose();
     rounding += shapes_[point].volume * modulus * (formed + damped * slope.dot(moved)) * slope;
   }
   const auto nodes = space_->nodes(e);
@@ -34,6 +35,16 @@ void ElementsOf<N>::add_sizes(std::size_t e, const Kinematics& motion, const Nod
     const auto i = static_cast<Eigen::Index>(a);
     sums.size[nodes[a]] += force.col(i).norm() + inertia.col(i).norm();
     sums.rounding[nodes[a]] += rounding[i];
+  }
+}
+
+template <int N>
+void ElementsOf<N>::add_inertia(const Kinematics& motion, OwnedField& inertia) const
+{
+  for (std::size_t e = 0; e < tets(); ++e) {
+    const Material& m = material(e);
+    const Nodal w = nodal(motion.a, e) + m.rayleigh_mass * nodal(motion.v, e);
+    scatter(m.density * mass_factor(e) * w * mass_form(e), e, inertia);
   }
 }
 

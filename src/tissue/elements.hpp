@@ -132,6 +132,8 @@ class Elements
   /// The same into the nodes of some tets only.
   virtual void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
                              const Kinematics& motion, ForceSums& sums) const = 0;
+  /// Adds the forces of inertia with mass damping alone [N].
+  virtual void add_inertia(const Kinematics& motion, OwnedField& inertia) const = 0;
   /// Takes the exact tangent, or that with the rotations held, from the next `configure` on.
   virtual void take(Tangent tangent) = 0;
 

@@ -34,6 +34,7 @@ class ElementsOf final : public Elements
                   ForceSums& sums) const override;
   void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
                      const Kinematics& motion, ForceSums& sums) const override;
+  void add_inertia(const Kinematics& motion, OwnedField& inertia) const override;
   void take(Tangent tangent) override { settings_.tangent = tangent; }
   TetWork work(const Configuration& at, const Kinematics& motion) const override;
   StressField stresses(const Configuration& at, const GhostedField& u) const override;

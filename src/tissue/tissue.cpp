@@ -113,10 +113,19 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Con
   if (sizes) {
     const double norms =
         space_->norm(load) + space_->norm(sums.internal) + space_->norm(sums.inertia);
-    *sizes = {std::move(sums.size), std::move(sums.rounding), norms};
+    *sizes = {std::move(sums.size), std::move(sums.rounding), norms, sums.internal};
     for (int a = 0; a < space_->owned(); ++a) sizes->size[a] += load.node(a).norm();
   }
   return {load.value - sums.internal.value - sums.inertia.value};
+}
+
+/// The same where the balance was looked at last: what stress makes is known from there.
+OwnedField Tissue::forces_from_balance(const TissueState& old, const OwnedField& u,
+                                       const TimeStep& step) const
+{
+  OwnedField inertia = space_->zero();
+  if (!step.is_static) elements_->add_inertia(kinematics(old, u, step), inertia);
+  return {external(step).value - configured_.sizes.internal.value - inertia.value};
 }
 
 /// The same of some elements alone, and all loads.
@@ -152,8 +161,9 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   // happens. Under loads that follow r is the rest of large ones.
   const bool approach = current_->older || more.stiffness;
   Sizes sizes;
-  if (approach) sizes = no_sizes();
-  OwnedField r = forces(old, iterate, at_, step, approach ? &sizes : nullptr);
+  if (approach && !known_) sizes = no_sizes();
+  OwnedField r = known_ ? forces_from_balance(old, iterate, step)
+                        : forces(old, iterate, at_, step, approach ? &sizes : nullptr);
   if (more.force.value.size() > 0) r.value += more.force.value;
 
   OwnedField prescribed = space_->zero();
@@ -171,7 +181,8 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
   const double least = more.stiffness ? 1e-10 : 1e-12;
   if (approach)
-    begin_approach(old, step, r, more, least_rest(sizes, least), goes_on, motion);
+    begin_approach(old, step, r, more, least_rest(known_ ? configured_.sizes : sizes, least),
+                   goes_on, motion);
   else
     motion.half = begin(r);
   return motion;

@@ -215,6 +215,8 @@ class Tissue
   OwnedField operate(const Approach& approach, const OwnedField& d) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const Configuration& at,
                     const TimeStep& step, Sizes* sizes = nullptr) const;
+  OwnedField forces_from_balance(const TissueState& old, const OwnedField& u,
+                                 const TimeStep& step) const;
   OwnedField forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
                        const OwnedField& u, const Configuration& at, const TimeStep& step) const;
   Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
@@ -241,8 +243,10 @@ class Tissue
   {
     std::optional<OwnedField> u;
     Configuration at;
-  } configured_;    ///< where the balance was looked at last: often the next step begins there
-  bool automatic_;  ///< the tangent may change within a step
+    Sizes sizes;
+  } configured_;        ///< where the balance was looked at last: often the next step begins there
+  bool known_ = false;  ///< the present linearisation is there, and its forces of stress
+  bool automatic_;      ///< the tangent may change within a step
   bool dropped_ = false;  ///< not to the exact one in this step
   OwnedField weight_;     ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
