@@ -61,7 +61,8 @@ bool same_states(const Problem& problem, const VecX& a, const VecX& b)
 {
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (problem.normal[at] >= 0 && problem.friction[i] > 0.0) return false;
+    if (!problem.normal.empty() && problem.normal[at] >= 0 && problem.friction[i] > 0.0)
+      return false;
     const RowKind kind = problem.kind[at];
     if (place(kind, problem.bound[i], a[i]) != place(kind, problem.bound[i], b[i])) return false;
   }
