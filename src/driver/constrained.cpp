@@ -147,7 +147,7 @@ double Simulation::lag_tolerance(const core::TimeStep& now, double residual, boo
 {
   constexpr double least = 1e-10, part = 0.1;
   const bool follows = cavities_ && cavities_->follows();
-  const bool iterated = now.is_static || scenario_.time.newton_max > 1;  // certainly
+  const bool iterated = now.is_static || scenario_.time.newton_max > 1;
   const double lag = scenario_.tissue.lag_tolerance;
   const double leads_on = follows ? 1e-4 : std::max(lag, iterated ? 1e-4 : 0.0);
   if (!(follows || (iterated && rows)) || !std::isfinite(residual)) return leads_on;

@@ -19,7 +19,7 @@ Simulation::Effort Simulation::effort_of(const core::TimeStep& now) const
   if (now.is_static || follows) return {most, 0.0, tolerance, true};
   const int told = scenario_.time.newton_max;
   if (told > 1) return {told, 0.0, tolerance, true};
-  const double any = std::numeric_limits<double>::infinity();
+  const double any = std::numeric_limits<double>::max();  // but what is not finite
   if (told == 1 || !bends) return {1, any, any, bends};
   return {most, automatic_first, automatic, true};
 }

@@ -161,7 +161,7 @@ class Simulation
     std::vector<constraint::SmallBody> needles;  ///< as the rows feel them
     core::MatX C;                                ///< isolated compliance of the probes [m/N]
     int factor_version = 0;                      ///< of the factor that C belongs to
-    core::VecX mobility;                         ///< W_ii, 0 on rows that nothing can move [m/N]
+    core::VecX mobility;                         ///< see law::mobility [m/N]
     solve::Probes probes;                        ///< tissue nodes that the rows hold
     core::VecX forces;                           ///< Ĥᵀλ on them [N]
     std::vector<core::VecX> levers;              ///< H_nᵀλ on each needle

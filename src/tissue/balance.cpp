@@ -1,5 +1,7 @@
 #include "tissue/balance.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tissue/tissue.hpp"
@@ -58,7 +60,10 @@ Balance Tissue::balance(const TissueState& past, const OwnedField& u, const Time
   const double least = Balance::of_largest * space_->comm().max(mine);
   double worst = 0.0;
   for (Eigen::Index a = 0; a < rest.size(); ++a)
-    if (!(rest[a] <= 0.0)) worst = std::max(worst, rest[a] / (scale[a] + least));
+    if (!(rest[a] <= 0.0)) {
+      const double part = rest[a] / (scale[a] + least);
+      worst = std::isfinite(part) ? std::max(worst, part) : std::numeric_limits<double>::infinity();
+    }
   Balance balance;
   balance.worst = space_->comm().max(worst);
   balance.lost = sums.segment<3>(2).norm();
