@@ -34,6 +34,7 @@ struct Sizes
   core::VecX size, rounding;   ///< see ForceSums, loads included (owned nodes) [N]
   double norms = 0.0;          ///< ‖f_ext‖ + ‖f_int‖ + ‖inertia‖ [N]
   fem::OwnedField internal{};  ///< forces of stress and stiffness damping [N]
+  fem::OwnedField damping{};   ///< of stiffness damping alone; empty: there is none [N]
 };
 
 }  // namespace trocar::tissue

@@ -140,20 +140,24 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
   const Nodal u = nodal(motion.u, e);
   const Nodal v = moves ? nodal(motion.v, e) : Nodal::Zero();
   const double beta = moves ? m.rayleigh_stiffness : 0.0;
-  Nodal force = Nodal::Zero();
+  Nodal force = Nodal::Zero(), damping = Nodal::Zero();
   for (std::size_t point = points * e; point < points * (e + 1); ++point) {
     const Mat3& R = at.R[point];
     const Mat3 G = gradient(u, point);
     const Mat3 by = energy::dilatation_gradient(settings_.model, R, G);
-    Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, G);
-    double pressure = averaged() ? p[static_cast<Eigen::Index>(point)]
-                                 : m.lambda() * energy::dilatation(settings_.model, R, G);
-    if (beta > 0.0) {
-      const Mat3 D = gradient(v, point);
-      P += beta * m.mu() * energy::viscous_shear(settings_.model, R, G, D);
-      if (!averaged()) pressure += beta * m.lambda() * by.cwiseProduct(D).sum();
-    }
+    const Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, G);
+    const double pressure = averaged() ? p[static_cast<Eigen::Index>(point)]
+                                       : m.lambda() * energy::dilatation(settings_.model, R, G);
     force += shapes_[point].volume * (P + pressure * by) * shapes_[point].gradient;
+    if (beta == 0.0) continue;
+    const Mat3 D = gradient(v, point);
+    Mat3 viscous = m.mu() * energy::viscous_shear(settings_.model, R, G, D);
+    if (!averaged()) viscous += m.lambda() * by.cwiseProduct(D).sum() * by;
+    damping += beta * shapes_[point].volume * viscous * shapes_[point].gradient;
+  }
+  if (beta > 0.0) {
+    force += damping;
+    if (sums.damping.value.size() > 0) scatter(damping, e, sums.damping);
   }
   scatter(force, e, sums.internal);
   Nodal inertia = Nodal::Zero();

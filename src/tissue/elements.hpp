@@ -73,6 +73,7 @@ struct Kinematics
 struct ForceSums
 {
   OwnedField internal, inertia;  ///< of stress and stiffness damping; of mass and its damping [N]
+  OwnedField damping{};          ///< of stiffness damping alone; empty: not asked for [N]
   /// Σ over tets of the length of their force on a node, and a bound of what rounding can make of
   /// it, over the unit round-off (owned nodes each); empty: not asked for [N].
   core::VecX size{}, rounding{};

@@ -1,16 +1,7 @@
-#include <algorithm>
-
 #include "tissue/tissue.hpp"
 
 // Where the tissue is linearised, with which tangent, and when that cannot be.
 namespace trocar::tissue {
-
-/// Stiffness damping makes forces of the velocity as well.
-static bool damped_by_stiffness(const std::vector<Material>& materials)
-{
-  return std::any_of(materials.begin(), materials.end(),
-                     [](const Material& m) { return m.rayleigh_stiffness > 0.0; });
-}
 
 /// `goes_on`: from the last linearisation, whose pressures then lead to those of the tangent.
 bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
@@ -20,9 +11,8 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
   if (led) p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
   const bool known = configured_.u && !exact_tangent() && configured_.u->value == iterate.value;
   bool upright = true;  // else the balance would have been found where an element is folded
-  const bool all_known = space_->comm().all(known);
-  known_ = all_known && !damped_by_stiffness(settings_.materials);
-  if (all_known)
+  known_ = space_->comm().all(known);
+  if (known_)
     at_ = configured_.at;
   else
     upright = configure(space_->with_ghosts(iterate), at_);

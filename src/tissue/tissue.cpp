@@ -14,6 +14,9 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
       elements_(Elements::make(mesh, space, settings_)),
       pattern_(space, elements_->cliques()),
       values_(pattern_),
+      damped_by_stiffness_(
+          std::any_of(settings_.materials.begin(), settings_.materials.end(),
+                      [](const Material& m) { return m.rayleigh_stiffness > 0.0; })),
       automatic_(settings_.model == Model::corotational && settings_.tangent == Tangent::automatic),
       weight_(space.zero())
 {
@@ -107,25 +110,41 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Con
   if (sizes) {
     sums.size = std::move(sizes->size);
     sums.rounding = std::move(sizes->rounding);
+    if (!step.is_static && damped_by_stiffness_) sums.damping = space_->zero();
   }
   elements_->add_forces(at, kinematics(old, u, step), sums);
   const OwnedField load = external(step);
   if (sizes) {
     const double norms =
         space_->norm(load) + space_->norm(sums.internal) + space_->norm(sums.inertia);
-    *sizes = {std::move(sums.size), std::move(sums.rounding), norms, sums.internal};
+    *sizes = {std::move(sums.size), std::move(sums.rounding), norms, sums.internal,
+              std::move(sums.damping)};
     for (int a = 0; a < space_->owned(); ++a) sizes->size[a] += load.node(a).norm();
   }
   return {load.value - sums.internal.value - sums.inertia.value};
 }
 
-/// The same where the balance was looked at last: what stress makes is known from there.
-OwnedField Tissue::forces_from_balance(const TissueState& old, const OwnedField& u,
-                                       const TimeStep& step) const
+/// What stress makes is known where the balance was looked at last; damping as well as long as the
+/// step is the same, or where the tissue rests: at the beginning of steps of first order.
+bool Tissue::forces_known(const TissueState& old, const OwnedField& u, bool goes_on) const
 {
+  if (!known_) return false;
+  if (!damped_by_stiffness_ || goes_on) return true;
+  if (settings_.dilatation != Dilatation::pointwise) return false;  // in one with the pressures
+  return space_->comm().all(old.u.value == u.value);
+}
+
+/// The forces where they are known.
+OwnedField Tissue::forces_from_balance(const TissueState& old, const OwnedField& u,
+                                       const TimeStep& step, bool goes_on) const
+{
+  const Sizes& sizes = configured_.sizes;
+  OwnedField f{external(step).value - sizes.internal.value};
+  if (!goes_on && sizes.damping.value.size() > 0) f.value += sizes.damping.value;
+  if (step.is_static) return f;
   OwnedField inertia = space_->zero();
-  if (!step.is_static) elements_->add_inertia(kinematics(old, u, step), inertia);
-  return {external(step).value - configured_.sizes.internal.value - inertia.value};
+  elements_->add_inertia(kinematics(old, u, step), inertia);
+  return {f.value - inertia.value};
 }
 
 /// The same of some elements alone, and all loads.
@@ -160,10 +179,11 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   // An approach ends where rounding of the forces does, or would run on and on where nothing
   // happens. Under loads that follow r is the rest of large ones.
   const bool approach = current_->older || more.stiffness;
+  const bool known = forces_known(old, iterate, goes_on);
   Sizes sizes;
-  if (approach && !known_) sizes = no_sizes();
-  OwnedField r = known_ ? forces_from_balance(old, iterate, step)
-                        : forces(old, iterate, at_, step, approach ? &sizes : nullptr);
+  if (approach && !known) sizes = no_sizes();
+  OwnedField r = known ? forces_from_balance(old, iterate, step, goes_on)
+                       : forces(old, iterate, at_, step, approach ? &sizes : nullptr);
   if (more.force.value.size() > 0) r.value += more.force.value;
 
   OwnedField prescribed = space_->zero();
@@ -181,7 +201,7 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
   FreeMotion motion{{iterate.value + prescribed.value}, {}};
   const double least = more.stiffness ? 1e-10 : 1e-12;
   if (approach)
-    begin_approach(old, step, r, more, least_rest(known_ ? configured_.sizes : sizes, least),
+    begin_approach(old, step, r, more, least_rest(known ? configured_.sizes : sizes, least),
                    goes_on, motion);
   else
     motion.half = begin(r);

@@ -215,8 +215,9 @@ class Tissue
   OwnedField operate(const Approach& approach, const OwnedField& d) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const Configuration& at,
                     const TimeStep& step, Sizes* sizes = nullptr) const;
-  OwnedField forces_from_balance(const TissueState& old, const OwnedField& u,
-                                 const TimeStep& step) const;
+  bool forces_known(const TissueState& old, const OwnedField& u, bool goes_on) const;
+  OwnedField forces_from_balance(const TissueState& old, const OwnedField& u, const TimeStep& step,
+                                 bool goes_on) const;
   OwnedField forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
                        const OwnedField& u, const Configuration& at, const TimeStep& step) const;
   Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
@@ -245,10 +246,11 @@ class Tissue
     Configuration at;
     Sizes sizes;
   } configured_;        ///< where the balance was looked at last: often the next step begins there
-  bool known_ = false;  ///< the present linearisation is there, and its forces of stress
-  bool automatic_;      ///< the tangent may change within a step
-  bool dropped_ = false;  ///< not to the exact one in this step
-  OwnedField weight_;     ///< ∫ N_a ρ g of every node [N]
+  bool known_ = false;  ///< the present linearisation is there
+  bool damped_by_stiffness_;  ///< any of the tissue
+  bool automatic_;            ///< the tangent may change within a step
+  bool dropped_ = false;      ///< not to the exact one in this step
+  OwnedField weight_;         ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Owned dofs that are held, and by which displacement or, after these, support.
   std::vector<std::pair<Eigen::Index, std::size_t>> held_dofs_;
