@@ -2,9 +2,9 @@
 # program and its meshes. Each says what it does and is quick when there is nothing to do.
 
 packages_to_run=(g++ cmake ninja-build pkg-config git libpetsc-real-dev libhdf5-openmpi-dev
-  libgmsh-dev libmetis-dev libsuitesparse-dev libeigen3-dev libboost-dev openmpi-bin
+  libmetis-dev libsuitesparse-dev libeigen3-dev libboost-dev openmpi-bin
   libopenblas0-serial gmsh python3-h5py python3-numpy python3-matplotlib)
-packages_to_test=(libgtest-dev)
+packages_to_test=(libgtest-dev libgmsh-dev)
 packages_to_develop=(clang-format)
 
 # Installs those of the packages that are missing, or says how to.

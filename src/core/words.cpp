@@ -30,7 +30,51 @@ std::string_view trimmed(std::string_view text)
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+/// Bytes of the UTF-8 character at the front of a text, 0: none, or one that controls a terminal.
+std::size_t character(std::string_view text)
+{
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  if (first == 0xc2 && byte(1) < 0xa0) return 0;  // the second set of control characters
+  const bool turns = first == 0xe2 && ((byte(1) == 0x80 && byte(2) >= 0xa8 && byte(2) <= 0xae) ||
+                                       (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9));
+  return turns ? 0 : length;  // line ends, and what changes the direction of writing
+}
+
+std::string escaped(char c)
+{
+  constexpr std::string_view digits = "0123456789abcdef";
+  if (c == '\n') return "\\n";
+  if (c == '\r') return "\\r";
+  if (c == '\t') return "\\t";
+  const auto byte = static_cast<unsigned char>(c);
+  return {'\\', 'x', digits[byte >> 4], digits[byte & 15U]};
+}
+
 }  // namespace
+
+std::string printable(std::string_view text, std::size_t most)
+{
+  std::vector<std::string> shown;
+  while (!text.empty()) {
+    const std::size_t length = character(text);
+    shown.push_back(length > 0 ? std::string(text.substr(0, length)) : escaped(text.front()));
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  std::string all;
+  const std::size_t half = most / 2;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const bool cut = shown.size() > most && i >= half && i + half < shown.size();
+    if (!cut) all += shown[i];
+    if (cut && i == half) all += "...";
+  }
+  return all;
+}
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates)
 {
@@ -67,6 +111,15 @@ std::string join(const std::vector<std::string>& words, std::string_view separat
     text += word;
   }
   return text;
+}
+
+std::string listed(const std::vector<long long>& tags, std::size_t most)
+{
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < std::min(tags.size(), most); ++i)
+    words.push_back(std::to_string(tags[i]));
+  if (tags.size() > most) words.push_back("...");
+  return join(words);
 }
 
 std::vector<std::string> split(std::string_view text, char separator)

@@ -12,11 +12,18 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 /// " (did you mean 'x'?)" for the nearest candidate, or "" when there is none.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The text as a message may show it: control characters escaped ("\n", "\x1b"), bytes that are no
+/// UTF-8 as well, and cut in its middle where it has more than `most` characters.
+std::string printable(std::string_view text, std::size_t most = 200);
+
 /// A number with six significant digits: 1.5e-09, 0.08.
 std::string shown(double value);
 
 /// The words joined by `separator`.
 std::string join(const std::vector<std::string>& words, std::string_view separator = ", ");
+
+/// The first of some tags, and that there are more: "3, 7, 12, ...".
+std::string listed(const std::vector<long long>& tags, std::size_t most = 5);
 
 /// The pieces of `text` between separators, blanks trimmed; an empty text has no pieces.
 std::vector<std::string> split(std::string_view text, char separator);

@@ -1,8 +1,10 @@
 #include "driver/boundary_options.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/csv.hpp"
+#include "core/words.hpp"
 #include "driver/option_source.hpp"
 #include "mesh/quadratic.hpp"
 
@@ -45,8 +47,17 @@ std::map<int, Vec3> read_field(const std::string& file, const std::string& group
   if (table.columns != std::vector<std::string>{"node", "x", "y", "z"})
     throw core::data_error(file + ": columns must be node,x,y,z");
   std::map<long long, Vec3> by_tag;
-  for (const auto& row : table.rows)
-    by_tag[static_cast<long long>(row[0])] = Vec3(row[1], row[2], row[3]);
+  for (const auto& row : table.rows) {
+    constexpr double most = 9e15;  // integers that a number with a point still tells apart
+    if (row[0] != std::floor(row[0]) || std::abs(row[0]) > most)
+      throw core::data_error(file + ": node " + core::shown(row[0]) + " is no tag of a node");
+    const auto tag = static_cast<long long>(row[0]);
+    const Vec3 value(row[1], row[2], row[3]);
+    const auto [known, fresh] = by_tag.emplace(tag, value);
+    if (!fresh && known->second != value)
+      throw core::data_error(file + ": node " + std::to_string(tag) +
+                             " is given twice, with different displacements");
+  }
   std::map<int, Vec3> field;
   std::vector<int> missing;
   for (int node : mesh::group_nodes(mesh, group)) {
@@ -116,6 +127,7 @@ tissue::BoundaryConditions read_boundary(Options& options, const mesh::Mesh& mes
     }
   }
   for (const auto& fixed : boundary.fixed) mesh::group_nodes(mesh, fixed.group);
+  tissue::refuse_conflicts(boundary, mesh);
   return boundary;
 }
 

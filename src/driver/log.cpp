@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/blas.hpp"
+#include "core/words.hpp"
 #include "driver/provenance.hpp"
 
 namespace trocar::driver {
@@ -34,6 +35,8 @@ void Log::set_up(double seconds) const
               mesh.file.c_str(), mesh.node_count(), mesh.tet_count(), 3 * mesh.node_count(),
               q.volume, q.shortest_edge, q.longest_edge);
   std::printf("  quality: mean %.3f, worst %.3f (tet %lld)\n", q.mean, q.smallest, q.worst_tag);
+  for (const std::string& remark : mesh.remarks)
+    std::printf("  note: %s\n", core::printable(remark, 400).c_str());
   std::printf("ranks %d, tissue solver %s, set-up %.2f s\n", simulation_->space().comm().size(),
               solver.c_str(), seconds);
   const double rate = base::blas_rate();
@@ -46,7 +49,7 @@ void Log::set_up(double seconds) const
         library.c_str());
   if (simulation_->cavities()) cavities(*simulation_->cavities());
   for (const std::string& warning : scenario.warnings)
-    std::printf("warning: %s\n", warning.c_str());
+    std::printf("warning: %s\n", core::printable(warning, 400).c_str());
   std::fflush(stdout);
 }
 

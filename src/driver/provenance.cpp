@@ -1,6 +1,5 @@
 #include "driver/provenance.hpp"
 
-#include <gmsh.h>
 #include <hdf5.h>
 
 #include <ctime>
@@ -67,7 +66,6 @@ io::Provenance provenance(const Simulation& simulation, const Invocation& invoca
              {"mpi_ranks", std::to_string(simulation.space().comm().size())},
              {"petsc_version", petsc_version()},
              {"hdf5_version", H5_VERS_INFO},
-             {"gmsh_version", GMSH_API_VERSION},
              {"mpi_version", mpi_version()},
              {"options_file_name", invocation.options_file},
              {"options_file", invocation.options_file_text},

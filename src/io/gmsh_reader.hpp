@@ -12,9 +12,4 @@ namespace trocar::io {
 /// Failure (65) on every rank, with file and tag, for a mesh that cannot be used. Collective.
 mesh::Mesh read_gmsh(const std::string& file, double scale, const base::Comm& comm);
 
-/// What the module libtrocar_gmsh.so has as `trocar_read_gmsh`: fills the groups, nodes and tets of
-/// `mesh` from `mesh.file`, coordinates times `scale` [m]. Failure (65) for a file Gmsh cannot read
-/// or elements we have not. For one rank alone.
-using ReadGmsh = void(mesh::Mesh& mesh, double scale);
-
 }  // namespace trocar::io

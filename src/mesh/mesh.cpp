@@ -119,8 +119,13 @@ double longest_edge(const std::array<Vec3, 4>& corner)
 
 const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name)
 {
-  for (const SurfaceGroup& group : mesh.surfaces)
-    if (group.name == name) return group;
+  for (const SurfaceGroup& group : mesh.surfaces) {
+    if (group.name != name) continue;
+    if (group.strays.empty()) return group;
+    throw core::data_error(
+        mesh.file + ": surface '" + name + "' has " + std::to_string(group.strays.size()) +
+        " triangles that are no face of a tetrahedron: " + core::listed(group.strays));
+  }
   throw no_group(mesh, "surface", name, surface_names(mesh));
 }
 
@@ -128,6 +133,9 @@ std::vector<int> group_nodes(const Mesh& mesh, const std::string& name)
 {
   for (const PointGroup& group : mesh.points) {
     if (group.name != name) continue;
+    if (group.nodes.empty())
+      throw core::data_error(mesh.file + ": no point of physical group '" + name +
+                             "' is on a tetrahedron");
     std::vector<int> nodes = group.nodes;
     for (const auto& [a, b] : group.edges)
       if (mesh.quadratic() && mesh.has_edge(a, b)) nodes.push_back(mesh.middle_of(a, b));
@@ -158,12 +166,14 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
   comm.broadcast(mesh.volumes);
   comm.broadcast(mesh.node_tag);
   comm.broadcast(mesh.elem_tag);
+  comm.broadcast(mesh.remarks);
   std::vector<std::string> names = surface_names(mesh);
   comm.broadcast(names);
   mesh.surfaces.resize(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     mesh.surfaces[i].name = names[i];
     broadcast_rows(mesh.surfaces[i].faces, comm);
+    comm.broadcast(mesh.surfaces[i].strays);
   }
   names.clear();
   for (const PointGroup& group : mesh.points) names.push_back(group.name);

@@ -25,7 +25,9 @@ inline constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges{
 struct SurfaceGroup
 {
   std::string name;
-  std::vector<Face> faces;  ///< by their corners
+  std::vector<Face> faces;          ///< by their corners; each is one of a tet, and there once
+  std::vector<long long> tags{};    ///< of the triangles, as long as the mesh is being read
+  std::vector<long long> strays{};  ///< tags of triangles that are no face of a tet
 };
 
 /// A physical group of points, or of curves by their edges.
@@ -51,6 +53,7 @@ struct Mesh
   std::vector<SurfaceGroup> surfaces;
   std::vector<PointGroup> points;
   std::vector<long long> node_tag, elem_tag;
+  std::vector<std::string> remarks;  ///< what its user should know of it
 
   int node_count() const { return static_cast<int>(x.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }
@@ -89,10 +92,12 @@ double mean_edge(const std::array<Vec3, 4>& corner);
 /// Longest edge [m].
 double longest_edge(const std::array<Vec3, 4>& corner);
 
-/// Nodes of a physical surface or point group, sorted; Failure (65) when there is none.
+/// Nodes of a physical surface or point group, sorted; Failure (65) when there is no such group,
+/// or none of its points is on a tet.
 std::vector<int> group_nodes(const Mesh& mesh, const std::string& name);
 
-/// The physical surface of that name; Failure (65) naming the nearest one.
+/// The physical surface of that name; Failure (65) naming the nearest one, or tags of triangles in
+/// it that are no face of a tet.
 const SurfaceGroup& surface_group(const Mesh& mesh, const std::string& name);
 
 /// Root's mesh on every rank. Collective.

@@ -51,7 +51,6 @@ void make_quadratic(Mesh& mesh)
     mesh.middles.push_back(middles);
   }
   mesh.index_middles();
-  check_surface_edges(mesh);
 }
 
 std::optional<std::array<int, 2>> ends_of_middle(const Mesh& mesh, int node)
@@ -61,20 +60,6 @@ std::optional<std::array<int, 2>> ends_of_middle(const Mesh& mesh, int node)
       if (mesh.middles[t][k] == node)
         return std::array<int, 2>{mesh.tets[t][tet_edges[k][0]], mesh.tets[t][tet_edges[k][1]]};
   return std::nullopt;
-}
-
-void check_surface_edges(const Mesh& mesh)
-{
-  if (!mesh.quadratic()) return;
-  for (const SurfaceGroup& surface : mesh.surfaces)
-    for (const Face& face : surface.faces)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (!mesh.has_edge(face[k], face[(k + 1) % 3]))
-          throw core::data_error(
-              mesh.file + ": surface '" + surface.name + "' has an edge (nodes " +
-              std::to_string(mesh.node_tag[static_cast<std::size_t>(face[k])]) + ", " +
-              std::to_string(mesh.node_tag[static_cast<std::size_t>(face[(k + 1) % 3])]) +
-              ") that is no edge of a tetrahedron: quadratic tets need its middle");
 }
 
 void make_linear(Mesh& mesh)

@@ -28,9 +28,6 @@ void make_quadratic(Mesh& mesh);
 /// The corners between which a node is the middle; nothing for a corner. Looks through all tets.
 std::optional<std::array<int, 2>> ends_of_middle(const Mesh& mesh, int node);
 
-/// Throws Failure (65) when a surface of a quadratic mesh has an edge that no tet has.
-void check_surface_edges(const Mesh& mesh);
-
 /// Leaves the corners of a quadratic mesh; curved edges become straight.
 void make_linear(Mesh& mesh);
 

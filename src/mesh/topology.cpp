@@ -3,15 +3,51 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "mesh/quadratic.hpp"
 
 namespace trocar::mesh {
 namespace {
 
-// Local faces of a positively oriented tet, normals outward.
+// Local faces of a positively oriented tet, each opposite to a corner, normals outward.
 constexpr std::array<std::array<std::size_t, 3>, 4> tet_faces{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// Tets around the nodes that `nodes_of_tet` says they have.
+template <class NodesOfTet>
+NodeToTets tets_around(const Mesh& mesh, const NodesOfTet& nodes_of_tet)
+{
+  NodeToTets map;
+  map.start.assign(mesh.x.size() + 1, 0);
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    for (int node : nodes_of_tet(t)) ++map.start[static_cast<std::size_t>(node) + 1];
+  std::partial_sum(map.start.begin(), map.start.end(), map.start.begin());
+  map.tet.resize(static_cast<std::size_t>(map.start.back()));
+  std::vector<int> next(map.start.begin(), map.start.end() - 1);
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    for (int node : nodes_of_tet(t))
+      map.tet[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = t;
+  return map;
+}
+
+/// The faces of a tet of which a node is the least.
+void add_faces_from(const Mesh& mesh, int t, int node, std::vector<TetFace>& faces)
+{
+  const Tet& tet = mesh.tets[static_cast<std::size_t>(t)];
+  for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+    const auto& local = tet_faces[opposite];
+    const Face face{tet[local[0]], tet[local[1]], tet[local[2]]};
+    const std::size_t least = face[0] == node ? 0 : face[1] == node ? 1 : face[2] == node ? 2 : 3;
+    if (least == 3) continue;
+    const int second = face[(least + 1) % 3], third = face[(least + 2) % 3];
+    if (second < node || third < node) continue;
+    faces.push_back({{node, std::min(second, third), std::max(second, third)},
+                     t,
+                     static_cast<int>(opposite),
+                     third < second});
+  }
+}
 
 }  // namespace
 
@@ -23,47 +59,46 @@ Face sorted(Face face)
 
 NodeToTets node_to_tets(const Mesh& mesh)
 {
-  NodeToTets map;
-  map.start.assign(mesh.x.size() + 1, 0);
-  for (int t = 0; t < mesh.tet_count(); ++t)
-    for (int node : nodes_of(mesh, t)) ++map.start[static_cast<std::size_t>(node) + 1];
-  std::partial_sum(map.start.begin(), map.start.end(), map.start.begin());
-  map.tet.resize(static_cast<std::size_t>(map.start.back()));
-  std::vector<int> next(map.start.begin(), map.start.end() - 1);
-  for (int t = 0; t < mesh.tet_count(); ++t)
-    for (int node : nodes_of(mesh, t))
-      map.tet[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = t;
-  return map;
+  return tets_around(mesh, [&](int t) { return nodes_of(mesh, t); });
+}
+
+void visit_faces(const Mesh& mesh, const std::function<void(std::span<const TetFace>)>& visit)
+{
+  const NodeToTets around = tets_around(
+      mesh, [&](int t) -> const Tet& { return mesh.tets[static_cast<std::size_t>(t)]; });
+  std::vector<TetFace> faces;
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    faces.clear();
+    const auto at = static_cast<std::size_t>(node);
+    for (int i = around.start[at]; i < around.start[at + 1]; ++i)
+      add_faces_from(mesh, around.tet[static_cast<std::size_t>(i)], node, faces);
+    std::sort(faces.begin(), faces.end(), [](const TetFace& a, const TetFace& b) {
+      return std::tie(a.nodes, a.tet) < std::tie(b.nodes, b.tet);
+    });
+    for (auto first = faces.begin(); first != faces.end();) {
+      auto next = first;
+      while (next != faces.end() && next->nodes == first->nodes) ++next;
+      visit({first, next});
+      first = next;
+    }
+  }
 }
 
 std::vector<BoundaryFace> boundary_faces(const Mesh& mesh)
 {
-  struct Seen
-  {
-    int count = 0;
-    std::size_t first = 0;
-  };
-  std::vector<BoundaryFace> all;
-  std::map<Face, Seen> seen;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    const Tet& tet = mesh.tets[static_cast<std::size_t>(t)];
-    for (const auto& local : tet_faces) {
-      const Face face{tet[local[0]], tet[local[1]], tet[local[2]]};
-      Seen& entry = seen[sorted(face)];
-      if (entry.count == 0) entry.first = all.size();
-      if (++entry.count > 2)
-        throw core::data_error(mesh.file + ": tetrahedron " +
-                               std::to_string(mesh.elem_tag[static_cast<std::size_t>(t)]) +
-                               " shares a face with two others");
-      all.push_back({face, t});
-    }
-  }
-  std::vector<std::size_t> single;
-  for (const auto& [face, entry] : seen)
-    if (entry.count == 1) single.push_back(entry.first);
-  std::sort(single.begin(), single.end());
+  std::vector<TetFace> single;
+  visit_faces(mesh, [&](std::span<const TetFace> same) {
+    if (same.size() == 1) single.push_back(same.front());
+  });
+  std::sort(single.begin(), single.end(), [](const TetFace& a, const TetFace& b) {
+    return std::tie(a.tet, a.local) < std::tie(b.tet, b.local);
+  });
   std::vector<BoundaryFace> boundary;
-  for (std::size_t i : single) boundary.push_back(all[i]);
+  for (const TetFace& face : single) {
+    const Tet& tet = mesh.tets[static_cast<std::size_t>(face.tet)];
+    const auto& local = tet_faces[static_cast<std::size_t>(face.local)];
+    boundary.push_back({{tet[local[0]], tet[local[1]], tet[local[2]]}, face.tet});
+  }
   return boundary;
 }
 

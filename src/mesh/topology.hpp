@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -17,6 +19,19 @@ struct NodeToTets
 };
 NodeToTets node_to_tets(const Mesh& mesh);
 
+/// A face as one tet has it.
+struct TetFace
+{
+  Face nodes;  ///< ascending
+  int tet;
+  int local;    ///< the corner opposite to it
+  bool turned;  ///< seen from outside of the tet, its nodes run clockwise
+};
+
+/// Shows every face with all tets that have it, faces in the order of their nodes. Memory for the
+/// tets of the nodes alone.
+void visit_faces(const Mesh& mesh, const std::function<void(std::span<const TetFace>)>& visit);
+
 /// A face on the boundary, oriented so that its normal points out of its tet.
 struct BoundaryFace
 {
@@ -24,8 +39,7 @@ struct BoundaryFace
   int tet;
 };
 
-/// Faces that belong to exactly one tet, in tet order. Throws Failure (65) when a face belongs to
-/// three or more.
+/// Faces that belong to exactly one tet, in tet order.
 std::vector<BoundaryFace> boundary_faces(const Mesh& mesh);
 
 /// Component number of every node: nodes joined by tets share one. `count` gets how many.

@@ -2,13 +2,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/dense.hpp"
+#include "core/words.hpp"
 #include "law/volume.hpp"
 #include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::tissue {
+namespace {
+
+/// What a group prescribes along one axis of a node: a length, and the factor over time of one that
+/// is not zero.
+struct Prescribed
+{
+  double value = 0.0;
+  const std::optional<core::Csv>* curve = nullptr;
+  const std::string* group = nullptr;
+
+  bool agrees(const Prescribed& other) const
+  {
+    if (value != other.value) return false;
+    if (value == 0.0) return true;
+    const bool both = curve->has_value() && other.curve->has_value();
+    return both ? (*curve)->rows == (*other.curve)->rows
+                : curve->has_value() == other.curve->has_value();
+  }
+};
+
+}  // namespace
+
+void refuse_conflicts(const BoundaryConditions& conditions, const mesh::Mesh& mesh)
+{
+  std::map<std::pair<int, int>, Prescribed> known;  // by node and axis
+  const auto add = [&](int node, int axis, const Prescribed& one) {
+    const auto [place, fresh] = known.emplace(std::pair(node, axis), one);
+    const Prescribed& other = place->second;
+    if (fresh || one.agrees(other)) return;
+    const auto moves = [](const Prescribed& by) {
+      return "'" + *by.group + "' " +
+             (by.value == 0.0 ? "holds it" : "moves it by " + core::shown(by.value) + " m") +
+             (by.curve && *by.curve ? " times its curve" : "");
+    };
+    throw core::data_error(mesh.file + ": node " +
+                           std::to_string(mesh.node_tag[static_cast<std::size_t>(node)]) +
+                           " is in two groups that disagree along " + "xyz"[axis] + ": " +
+                           moves(other) + ", " + moves(one));
+  };
+  for (const auto& fixed : conditions.fixed)
+    for (int node : mesh::group_nodes(mesh, fixed.group))
+      for (int axis = 0; axis < 3; ++axis)
+        if (fixed.axes >> axis & 1U) add(node, axis, {0.0, nullptr, &fixed.group});
+  for (const auto& moved : conditions.displacements)
+    for (int node : mesh::group_nodes(mesh, moved.group)) {
+      const Vec3& value = moved.field.empty() ? moved.value : moved.field.at(node);
+      for (int axis = 0; axis < 3; ++axis)
+        if (!std::isnan(value[axis])) add(node, axis, {value[axis], &moved.curve, &moved.group});
+    }
+}
 
 fem::Dirichlet dirichlet_set(const BoundaryConditions& conditions, const mesh::Mesh& mesh,
                              const fem::Space& space)

@@ -43,6 +43,9 @@ struct BoundaryConditions
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
 };
 
+/// Throws Failure (65) where two groups prescribe different displacements for one node.
+void refuse_conflicts(const BoundaryConditions& conditions, const mesh::Mesh& mesh);
+
 /// The fixed set of these conditions. Throws Failure (65) for an unknown group.
 fem::Dirichlet dirichlet_set(const BoundaryConditions& conditions, const mesh::Mesh& mesh,
                              const fem::Space& space);

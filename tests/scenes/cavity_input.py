@@ -72,8 +72,6 @@ check(abs(again - pressure) <= 1e-9 * pressure, "a volume taken out is the same 
 # Geometry.
 refuses("open wall", 65, ["wall", "hole of 3 edges around", "_cap"],
         {"-mesh": block("open", ONE, lambda g: g["wall"].pop())}, ranks=(1, 3))
-refuses("wall with a face twice", 65, ["wall", "twice"],
-        {"-mesh": block("twice", ONE, lambda g: g["wall"].append(g["wall"][0]))})
 refuses("wall that touches itself along an edge", 65, ["wall", "touches itself"],
         {"-mesh": block("edge", {(1, 1, 1), (2, 2, 1)})})
 refuses("wall that touches itself at a node", 65, ["wall", "touches itself at node"],

@@ -102,6 +102,7 @@ def check_refusals():
         lines = error_lines(process)
         good = process.returncode == code and len(lines) == 1 and all(w in lines[0] for w in words)
         check(good, f"{what}: {process.returncode} {lines}")
+    refusals.clear()
 
 
 def histories(folder):

@@ -57,7 +57,7 @@ with h5py.File(os.path.join(folder, "run.h5")) as run:
     check(values[at] == "0.02" and sources[at] == "command line", "resolved options with sources")
     at = names.index("constraint_solver")
     check(values[at] == "auto" and sources[at] == "default", "defaults are recorded as such")
-    for name in ("git_commit", "petsc_version", "hdf5_version", "gmsh_version", "mesh_hash_fnv1a",
+    for name in ("git_commit", "petsc_version", "hdf5_version", "mesh_hash_fnv1a",
                  "command_line", "mpi_ranks"):
         check(len(p[name][0]) > 0, f"provenance/{name}")
     check(all("units" in d.attrs for d in p.values() if isinstance(d, h5py.Dataset)), "units there")

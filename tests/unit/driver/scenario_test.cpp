@@ -149,14 +149,14 @@ TEST_F(ScenarioTest, ChoosesTheElementByPoissonsRatio)
 TEST_F(ScenarioTest, ReadsSupportsAndLoads)
 {
   const std::string curve = test::shared_text("ramp.csv", "time,factor\n0,0\n1,1\n", comm);
-  const Scenario scenario = read({{"fix", "z0,x0:xz"},
+  const Scenario scenario = read({{"fix", "z0,x0:xy"},
                                   {"boundary_z1_displacement", "free,0,-0.002"},
                                   {"boundary_z1_curve", curve},
                                   {"boundary_y1_traction", "0,50,0"}});
   const tissue::BoundaryConditions& boundary = scenario.tissue.boundary;
   ASSERT_EQ(boundary.fixed.size(), 2U);
   EXPECT_EQ(boundary.fixed[0].axes, 7U);
-  EXPECT_EQ(boundary.fixed[1].axes, 5U);
+  EXPECT_EQ(boundary.fixed[1].axes, 3U);
   const auto again = read({{"fix", "z0:x,x0,z0:z"}}).tissue.boundary.fixed;
   ASSERT_EQ(again.size(), 2U);  // a group is one support
   EXPECT_EQ(again[0].axes, 5U);
@@ -173,6 +173,43 @@ TEST_F(ScenarioTest, ReadsSupportsAndLoads)
   expect_refusal({{"cavities", "pocket"}, {"cavity_surface", "core"}}, core::ExitCode::data,
                  "'core' is a volume");
   expect_refused_option({{"boundary_z1_curve", curve}}, "neither displacement nor traction");
+}
+
+// A node of two groups: what agrees is prescribed once, what does not is refused.
+TEST_F(ScenarioTest, RefusesGroupsThatDisagreeOnANode)
+{
+  const std::string ramp = test::shared_text("ramp.csv", "time,factor\n0,0\n1,1\n", comm);
+  const std::string fall = test::shared_text("fall.csv", "time,factor\n0,1\n1,0\n", comm);
+  const auto refused = [&](const Words& options, const std::string& words) {
+    expect_refusal(options, core::ExitCode::data, words);
+  };
+  refused({{"fix", "z0"}, {"boundary_x1_displacement", "0.001,free,free"}},
+          "disagree along x: 'z0' holds it, 'x1' moves it by 0.001 m");
+  refused({{"boundary_z1_displacement", "0.001,0,0"}, {"boundary_x1_displacement", "0.002,0,0"}},
+          "'x1' moves it by 0.002 m, 'z1' moves it by 0.001 m");
+  refused({{"boundary_z1_displacement", "0.001,0,0"},
+           {"boundary_x1_displacement", "0.001,0,0"},
+           {"boundary_x1_curve", ramp},
+           {"boundary_z1_curve", fall}},
+          "times its curve");
+  read({{"fix", "z0:z,x0:x"}, {"boundary_x1_displacement", "0.001,free,0"}});
+  read({{"boundary_z1_displacement", "0.001,0,0"},
+        {"boundary_x1_displacement", "0.001,0,0"},
+        {"boundary_x1_curve", ramp},
+        {"boundary_z1_curve", ramp}});
+}
+
+TEST_F(ScenarioTest, ReadsFieldsByWholeNodeTags)
+{
+  const auto field = [&](const std::string& rows) {
+    return test::shared_text("field.csv", "node,x,y,z\n" + rows, comm);
+  };
+  const auto refused = [&](const std::string& rows, const std::string& words) {
+    expect_refusal({{"boundary_z1_field", field(rows)}}, core::ExitCode::data, words);
+  };
+  refused("1.7,0,0,1\n", "node 1.7 is no tag of a node");
+  refused("1e300,0,0,1\n", "node 1e+300 is no tag");
+  refused("5,0,0,1\n5,0,0,2\n", "node 5 is given twice");
 }
 
 TEST_F(ScenarioTest, RefusesWhatCouldDoNothing)
