@@ -42,19 +42,15 @@ def arguments():
     return given, options
 
 
-def scaled_field(file, scale, factor):
-    """The size field times `factor` in the geometry's own unit; its smallest and largest size there.
-
-    The program writes metres, after -mesh_scale; the field lies on the undeformed mesh.
-    """
+def scaled_field(file, factor):
+    """The size field, in the geometry's own unit as the program writes it, times `factor`; its smallest and
+    largest size."""
     sizes = []
 
     def rewrite(found):
-        place = [float(n) / scale for n in found[1].split(",")]
-        size = [factor * float(n) / scale for n in found[2].split(",")]
+        size = [factor * float(n) for n in found[2].split(",")]
         sizes.extend(size)
-        return "SS(" + ",".join(f"{n:.9g}" for n in place) + "){" + ",".join(
-            f"{n:.9g}" for n in size) + "}"
+        return "SS(" + found[1] + "){" + ",".join(f"{n:.9g}" for n in size) + "}"
 
     text = NUMBER_LISTS.sub(rewrite, file.read_text())
     copy = file.with_name(file.stem + "_scaled.pos")
@@ -73,7 +69,7 @@ def adapted_mesh(scene, file, path, factor):
     A geometry sets limits and fields of its own, which overrule what gmsh's command line says
     (-bgm is still cut off by Mesh.CharacteristicLengthMin): so it is included and then overruled.
     """
-    field, smallest, largest = scaled_field(file, scene.scale, factor)
+    field, smallest, largest = scaled_field(file, factor)
     wrapper = path.with_suffix(".geo")
     wrapper.write_text(f'''Include "{scene.geometry}";
 Merge "{field}";

@@ -1,10 +1,8 @@
 #include "base/hdf5.hpp"
 
-#include <fcntl.h>
 #include <hdf5.h>
-#include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -14,15 +12,88 @@
 namespace trocar::base {
 namespace {
 
-/// A NaN must never reach a result file: it is refused here, at the only door.
+/// In memory alone, growing by this [B].
+constexpr std::size_t growth = std::size_t{1} << 16;
+
+H5Id in_memory()
+{
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  if (access.get() < 0 || H5Pset_fapl_core(access.get(), growth, 0) < 0)
+    throw core::Failure(core::ExitCode::internal, "HDF5 cannot keep a file in memory");
+  return access;
+}
+
+/// Messages of the object headers that a file of this library's earliest format has: see "IV.A.1.a
+/// Version 1 Data Object Header Prefix" of the HDF5 file format specification.
+class HeaderMessages
+{
+ public:
+  HeaderMessages(const std::string& bytes, std::uint64_t header) : bytes_(bytes)
+  {
+    if (bytes_.at(header) != 1) throw unknown();
+    add_block(header + 16, number<std::uint32_t>(header + 8));
+  }
+
+  struct Message
+  {
+    unsigned type;
+    std::uint64_t begin;  ///< of its content in the file
+  };
+  const std::vector<Message>& all() const { return messages_; }
+
+  template <class Number>
+  Number number(std::uint64_t at) const
+  {
+    Number value;
+    if (at + sizeof value > bytes_.size()) throw unknown();
+    std::memcpy(&value, bytes_.data() + at, sizeof value);
+    return value;
+  }
+
+  static core::Failure unknown()
+  {
+    return {core::ExitCode::internal, "this version of HDF5 writes headers that are not known"};
+  }
+
+ private:
+  void add_block(std::uint64_t at, std::uint64_t size)
+  {
+    constexpr unsigned continuation = 0x10;
+    for (const std::uint64_t end = at + size; at + 8 <= end;) {
+      const unsigned type = number<std::uint16_t>(at);
+      const std::uint64_t content = at + 8;
+      messages_.push_back({type, content});
+      if (type == continuation)
+        add_block(number<std::uint64_t>(content), number<std::uint64_t>(content + 8));
+      at = content + number<std::uint16_t>(at + 2);
+    }
+  }
+
+  const std::string& bytes_;
+  std::vector<Message> messages_;
+};
+
+/// Files in memory are told apart by their names.
+std::string name_of_its_own(const std::string& path)
+{
+  static long long made = 0;
+  return path + "#" + std::to_string(++made);
+}
+
+std::uint64_t padded(std::uint64_t size)
+{
+  return (size + 7) / 8 * 8;
+}
+
+}  // namespace
+
 void refuse_nan(const std::vector<double>& values, const std::string& where)
 {
   for (double value : values)
     if (!std::isfinite(value))
       throw core::solver_error("a value of " + where + " is not finite; it was not written");
 }
-
-}  // namespace
 
 H5Id::H5Id(H5Id&& other) noexcept
     : id_(std::exchange(other.id_, -1)), close_(std::exchange(other.close_, nullptr))
@@ -57,9 +128,19 @@ void H5File::check(int status, const std::string& what) const
 
 H5File H5File::create(const std::string& path)
 {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (id < 0) throw core::output_error("cannot write " + path + ": " + std::strerror(errno));
+  const H5Id access = in_memory();
+  const hid_t id =
+      H5Fcreate(name_of_its_own(path).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get());
+  if (id < 0) throw core::output_error("cannot make " + path);
+  return H5File(path, H5Id(id, H5Fclose));
+}
+
+H5File H5File::of_bytes(const std::string& path, std::string bytes)
+{
+  const H5Id access = in_memory();
+  const bool taken = H5Pset_file_image(access.get(), bytes.data(), bytes.size()) >= 0;
+  const hid_t id = taken ? H5Fopen(name_of_its_own(path).c_str(), H5F_ACC_RDWR, access.get()) : -1;
+  if (id < 0) throw core::output_error("cannot read " + path + " back");
   return H5File(path, H5Id(id, H5Fclose));
 }
 
@@ -135,17 +216,19 @@ void H5File::attribute(const std::string& path, const std::string& name, std::in
   check(H5Awrite(attribute.get(), H5T_NATIVE_INT64, &value), path + "@" + name);
 }
 
-void H5File::create_series(const std::string& path, std::size_t columns, const std::string& units)
+void H5File::create_series(const std::string& path, std::size_t columns, std::size_t room,
+                           const std::string& units)
 {
   const int rank = columns ? 2 : 1;
-  const hsize_t none[2] = {0, columns};
+  const hsize_t one[2] = {1, columns};
   const hsize_t unlimited[2] = {H5S_UNLIMITED, columns};
-  const hsize_t chunk[2] = {256, columns};
-  const H5Id space = checked(H5Screate_simple(rank, none, unlimited), H5Sclose, path);
+  const hsize_t chunk[2] = {room, columns};
+  const H5Id space = checked(H5Screate_simple(rank, one, unlimited), H5Sclose, path);
   const H5Id links = checked(H5Pcreate(H5P_LINK_CREATE), H5Pclose, path);
   check(H5Pset_create_intermediate_group(links.get(), 1), path);
   const H5Id layout = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path);
   check(H5Pset_chunk(layout.get(), rank, chunk), path);
+  check(H5Pset_alloc_time(layout.get(), H5D_ALLOC_TIME_EARLY), path);
   {
     const H5Id set = checked(H5Dcreate2(file_.get(), path.c_str(), H5T_NATIVE_DOUBLE, space.get(),
                                         links.get(), layout.get(), H5P_DEFAULT),
@@ -154,22 +237,69 @@ void H5File::create_series(const std::string& path, std::size_t columns, const s
   attribute(path, "units", units);
 }
 
-void H5File::append(const std::string& path, const std::vector<double>& row)
+SeriesPlace H5File::series_place(const std::string& path, std::size_t columns,
+                                 const std::string& bytes) const
 {
-  refuse_nan(row, path);
+  constexpr unsigned dataspace = 0x1;
   const H5Id set = checked(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose, path);
-  H5Id space = checked(H5Dget_space(set.get()), H5Sclose, path);
-  hsize_t shape[2] = {0, 0};
-  const int rank = H5Sget_simple_extent_dims(space.get(), shape, nullptr);
-  const hsize_t start[2] = {shape[0], 0};
-  const hsize_t count[2] = {1, row.size()};
-  ++shape[0];
-  check(H5Dset_extent(set.get(), shape), path);
-  space = checked(H5Dget_space(set.get()), H5Sclose, path);
-  check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start, nullptr, count, nullptr), path);
-  const H5Id memory = checked(H5Screate_simple(rank, count, nullptr), H5Sclose, path);
-  check(H5Dwrite(set.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, row.data()),
-        path);
+  const H5Id space = checked(H5Dget_space(set.get()), H5Sclose, path);
+  hsize_t first[2];
+  unsigned filters = 0;
+  haddr_t data = HADDR_UNDEF;
+  hsize_t size = 0;
+  check(H5Dget_chunk_info(set.get(), space.get(), 0, first, &filters, &data, &size), path);
+  H5O_info_t header;
+  check(H5Oget_info2(set.get(), &header, H5O_INFO_BASIC), path);
+  const HeaderMessages messages(bytes, header.addr);
+  for (const HeaderMessages::Message& one : messages.all())
+    if (one.type == dataspace && bytes.at(one.begin) == 1)  // version, rank, flags, 5 unused, sizes
+      return {data, one.begin + 8, std::max<std::size_t>(columns, 1)};
+  throw HeaderMessages::unknown();
+}
+
+std::uint64_t H5File::attribute_place(const std::string& path, const std::string& name,
+                                      const std::string& bytes) const
+{
+  constexpr unsigned attribute = 0xC;
+  const H5Id object = open_object(path);
+  H5O_info_t header;
+  check(H5Oget_info2(object.get(), &header, H5O_INFO_BASIC), path);
+  const HeaderMessages messages(bytes, header.addr);
+  for (const HeaderMessages::Message& one : messages.all()) {
+    if (one.type != attribute || bytes.at(one.begin) != 1) continue;
+    // version, 1 unused, sizes of name, type and space, then these, padded, and the value
+    const auto size = [&](std::uint64_t at) {
+      return messages.number<std::uint16_t>(one.begin + at);
+    };
+    if (std::string(bytes.c_str() + one.begin + 8) != name) continue;
+    return one.begin + 8 + padded(size(2)) + padded(size(4)) + padded(size(6));
+  }
+  throw HeaderMessages::unknown();
+}
+
+void H5File::copy(const H5File& from, const std::string& path)
+{
+  check(
+      H5Ocopy(from.file_.get(), path.c_str(), file_.get(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      path);
+}
+
+std::vector<std::string> H5File::top() const
+{
+  H5G_info_t group;
+  check(H5Gget_info(file_.get(), &group), "/");
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < group.nlinks; ++i) {
+    const ssize_t length = H5Lget_name_by_idx(file_.get(), "/", H5_INDEX_NAME, H5_ITER_INC, i,
+                                              nullptr, 0, H5P_DEFAULT);
+    if (length < 0) check(-1, "/");
+    std::string name(static_cast<std::size_t>(length) + 1, '\0');
+    H5Lget_name_by_idx(file_.get(), "/", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size(),
+                       H5P_DEFAULT);
+    name.pop_back();
+    names.push_back(name);
+  }
+  return names;
 }
 
 void H5File::make_group(const std::string& path)
@@ -180,25 +310,14 @@ void H5File::make_group(const std::string& path)
           path);
 }
 
-void H5File::flush()
+std::string H5File::bytes() const
 {
   check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "flush");
-}
-
-void H5File::close()
-{
-  flush();
-  file_ = H5Id();
-  sync_to_disk(path_);
-}
-
-void sync_to_disk(const std::string& path)
-{
-  const int descriptor = ::open(path.c_str(), O_RDONLY);
-  const bool failed = descriptor < 0 || ::fsync(descriptor) != 0;
-  const std::string why = std::strerror(errno);
-  if (descriptor >= 0) ::close(descriptor);
-  if (failed) throw core::output_error("cannot sync " + path + ": " + why);
+  const ssize_t size = H5Fget_file_image(file_.get(), nullptr, 0);
+  if (size < 0) check(-1, "image");
+  std::string all(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file_.get(), all.data(), all.size()) != size) check(-1, "image");
+  return all;
 }
 
 }  // namespace trocar::base

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace trocar::base {
@@ -25,12 +26,25 @@ class H5Id
   Close close_ = nullptr;
 };
 
-/// One HDF5 file, used from one rank (serial access). Every failing call is a Failure (74)
-/// naming the file. Paths are absolute inside the file; missing groups are made on the way.
+/// Where the bytes of a growing dataset are in the file: rows can be added without the library, in
+/// an order that leaves the file readable whatever happens in between.
+struct SeriesPlace
+{
+  std::uint64_t data = 0;   ///< first value, rows one behind the other [B]
+  std::uint64_t rows = 0;   ///< number of rows, 64 bits, in the dataset's header [B]
+  std::size_t columns = 1;  ///< values in a row
+};
+
+/// One HDF5 file in memory, used from one rank: nothing is on disk before its bytes are written
+/// there, so that no disk can fail the library. Every failing call is a Failure (74) naming the
+/// file. Paths are absolute inside the file; missing groups are made on the way.
 class H5File
 {
  public:
+  /// An empty file; `path` is what messages call it.
   static H5File create(const std::string& path);
+  /// The file with these bytes.
+  static H5File of_bytes(const std::string& path, std::string bytes);
   ~H5File() = default;
   H5File(H5File&&) noexcept = default;
   H5File& operator=(H5File&&) noexcept = default;
@@ -46,15 +60,24 @@ class H5File
   void attribute(const std::string& path, const std::string& name, const std::string& value);
   void attribute(const std::string& path, const std::string& name, std::int64_t value);
 
-  /// Makes an empty dataset of shape (0) or (0, columns) that grows row by row. All of them are
-  /// made before the run starts: only then does a killed run leave a readable file (HDF5 1.10).
-  void create_series(const std::string& path, std::size_t columns, const std::string& units);
-  void append(const std::string& path, const std::vector<double>& row);
+  /// Makes a dataset of shape (1) or (1, columns) with room for so many rows, all in one chunk.
+  void create_series(const std::string& path, std::size_t columns, std::size_t room,
+                     const std::string& units);
+  /// `bytes`: those of this file.
+  SeriesPlace series_place(const std::string& path, std::size_t columns,
+                           const std::string& bytes) const;
+  /// Where the value of a 64-bit attribute is [B].
+  std::uint64_t attribute_place(const std::string& path, const std::string& name,
+                                const std::string& bytes) const;
 
   void make_group(const std::string& path);
-  void flush();
-  /// Flushes, closes and fsyncs.
-  void close();
+  /// Copies an object with all below it from another file, and its attributes.
+  void copy(const H5File& from, const std::string& path);
+  /// Names of what is at the top.
+  std::vector<std::string> top() const;
+
+  /// The file as it would be on disk.
+  std::string bytes() const;
 
  private:
   explicit H5File(std::string path, H5Id file) : path_(std::move(path)), file_(std::move(file)) {}
@@ -68,7 +91,7 @@ class H5File
   H5Id file_;
 };
 
-/// fsync of a file or folder by name. Throws Failure (74).
-void sync_to_disk(const std::string& path);
+/// The value must be finite: a NaN must never reach a result file. Throws Failure (70).
+void refuse_nan(const std::vector<double>& values, const std::string& where);
 
 }  // namespace trocar::base

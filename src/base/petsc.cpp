@@ -2,7 +2,9 @@
 
 #include <mpi.h>
 
+#include <cstdlib>
 #include <string>
+#include <vector>
 
 namespace trocar::base {
 namespace {
@@ -41,10 +43,21 @@ void check_mpi(int code, const char* call)
                       std::string("MPI: ") + call + " failed with " + std::to_string(code));
 }
 
-PetscSession::PetscSession(int* argc, char*** argv)
+PetscSession::PetscSession(const std::vector<std::string>& arguments)
 {
-  check_petsc(PetscInitialize(argc, argv, nullptr, nullptr), "PetscInitialize");
+  unsetenv("PETSC_OPTIONS");
+  unsetenv("PETSC_OPTIONS_YAML");
+  std::vector<std::string> words{"trocar", "-skip_petscrc", "-no_signal_handler"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  int count = static_cast<int>(words.size());
+  char** start = pointers.data();
+  check_petsc(PetscInitialize(&count, &start, nullptr, nullptr), "PetscInitialize");
   check_petsc(PetscPushErrorHandler(remember_message, nullptr), "PetscPushErrorHandler");
+  for (const char* ours : {"-skip_petscrc", "-no_signal_handler"})
+    check_petsc(PetscOptionsClearValue(nullptr, ours), "PetscOptionsClearValue");
 }
 
 PetscSession::~PetscSession()

@@ -3,7 +3,9 @@
 #include <petscksp.h>
 
 #include <exception>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/failure.hpp"
 
@@ -66,11 +68,12 @@ using NullSpaceHandle = Handle<MatNullSpace, MatNullSpaceDestroy>;
 
 /// The PETSc session: initialised in the constructor, finalised in the destructor (unless an
 /// exception is on its way out: finalising is collective). PETSc's error printing is replaced by
-/// `check_petsc`.
+/// `check_petsc`. PETSc's database holds the arguments given here and nothing else: PETSC_OPTIONS
+/// and files named petscrc are not looked at.
 class PetscSession
 {
  public:
-  PetscSession(int* argc, char*** argv);
+  explicit PetscSession(const std::vector<std::string>& arguments);
   ~PetscSession();
   PetscSession(const PetscSession&) = delete;
   PetscSession& operator=(const PetscSession&) = delete;

@@ -67,7 +67,11 @@ const OptionSpec& Options::spec(const std::string& name) const
 std::string Options::label(const std::string& name, const std::string& group) const
 {
   const std::string full = with_group(name, group);
-  return given_.count(full) ? full : without_group(name);
+  const auto own = given_.find(full);
+  const auto one = own != given_.end() ? own : given_.find(without_group(name));
+  if (one == given_.end()) return without_group(name);
+  const std::string& place = one->second.place;
+  return one->first + (place.empty() ? "" : " (" + place + ")");
 }
 
 const std::string& Options::raw(const std::string& name, const std::string& group)
@@ -75,6 +79,10 @@ const std::string& Options::raw(const std::string& name, const std::string& grou
   const OptionSpec& row = spec(name);
   const std::string full = with_group(row.name, group);
   const std::string general = without_group(row.name);
+  const auto has_name = [&](const OptionSpec& other) { return other.name == full; };
+  if (full != row.name && full != general && std::any_of(table_.begin(), table_.end(), has_name))
+    throw option_error("option -" + full + " would mean two things with a name of '" +
+                       printable(group, 60) + "': choose another one");
   read_.insert(full);
   read_.insert(general);
   const auto own = given_.find(full);
@@ -95,9 +103,9 @@ double Options::number(const std::string& cell, const OptionSpec& row,
   char* end = nullptr;
   const double value = std::strtod(cell.c_str(), &end);
   if (cell.empty() || *end != '\0')
-    throw option_error("option -" + label + ": '" + cell + "' is not a number");
+    throw option_error("option -" + label + ": '" + printable(cell, 60) + "' is not a number");
   if (!std::isfinite(value))
-    throw option_error("option -" + label + ": '" + cell + "' is not finite");
+    throw option_error("option -" + label + ": '" + printable(cell, 60) + "' is not finite");
   const bool below = row.low_open ? value <= row.low : value < row.low;
   const bool above = row.high_open ? value >= row.high : value > row.high;
   if (below || above)
@@ -194,16 +202,47 @@ std::set<std::string> Options::groups_given(const std::string& pattern) const
   return groups;
 }
 
-void Options::refuse_unread() const
+void Options::try_value(const OptionSpec& row, const std::string& name)
+{
+  std::string group;
+  matches(row, name, &group);
+  switch (row.type) {
+    case OptionType::real:
+      real(row.name, group);
+      break;
+    case OptionType::integer:
+      integer(row.name, group);
+      break;
+    case OptionType::flag:
+      flag(row.name, group);
+      break;
+    case OptionType::names:
+      names(row.name, group);
+      break;
+    case OptionType::vector:
+      vector_or_free(row.name, group);
+      break;
+    case OptionType::text:
+    case OptionType::file:
+    case OptionType::choice:
+      text(row.name, group);
+      break;
+  }
+}
+
+void Options::refuse_unread()
 {
   std::vector<std::string> known;
   for (const std::string& one : read_) known.push_back("-" + one);
+  const std::set<std::string> read = read_;
   for (const auto& [name, value] : given_) {
-    const bool plain = std::any_of(table_.begin(), table_.end(),
-                                   [&](const OptionSpec& spec) { return spec.name == name; });
-    if (!plain && !read_.count(name))
-      throw option_error("option -" + name + " names nothing in this scene" +
-                         did_you_mean("-" + name, known));
+    if (read.count(name)) continue;
+    const auto plain = std::find_if(table_.begin(), table_.end(),
+                                    [&](const OptionSpec& spec) { return spec.name == name; });
+    if (plain == table_.end())
+      throw option_error("option -" + name + (value.place.empty() ? "" : " (" + value.place + ")") +
+                         " names nothing in this scene" + did_you_mean("-" + name, known));
+    try_value(*plain, name);
   }
 }
 

@@ -10,7 +10,8 @@
 
 namespace trocar::core {
 
-enum class OptionType { real, integer, flag, text, choice, names, vector };
+/// `file`: text that names a file to be read.
+enum class OptionType { real, integer, flag, text, file, choice, names, vector };
 
 /// One row of the option table: it drives parsing, -help, docs/options.md and the HDF5 record.
 /// A name may hold one `<group>` in place of a name the user chooses: `tissue_<volume>_young`
@@ -36,7 +37,8 @@ std::string range_text(const OptionSpec& spec);
 struct OptionValue
 {
   std::string value;
-  std::string source;  ///< "command line", "options file", "PETSC_OPTIONS", "default"
+  std::string source;   ///< "command line", "options file", "PETSC_OPTIONS", "default"
+  std::string place{};  ///< "FILE:LINE" in an options file, for messages
 };
 
 /// One value as it was used, for the record in the results.
@@ -70,15 +72,18 @@ class Options
   /// Every group the user named in options that match the pattern, sorted.
   std::set<std::string> groups_given(const std::string& pattern) const;
 
-  /// Throws Failure (64) for an override whose volume, surface or needle does not exist.
-  void refuse_unread() const;
+  /// Throws Failure (64) for an override whose volume, surface or needle does not exist, and for
+  /// values of options nobody has asked for that could not be read.
+  void refuse_unread();
 
   const std::vector<ResolvedOption>& resolved() const { return resolved_; }
 
  private:
   const OptionSpec& spec(const std::string& name) const;
   const std::string& raw(const std::string& name, const std::string& group);
-  /// The name to complain about: what the user gave, own or inherited.
+  /// Reads a value as its type asks for it, only to see that this is possible.
+  void try_value(const OptionSpec& spec, const std::string& name);
+  /// The name to complain about: what the user gave, own or inherited, and where.
   std::string label(const std::string& name, const std::string& group) const;
   double number(const std::string& cell, const OptionSpec& spec, const std::string& label) const;
 

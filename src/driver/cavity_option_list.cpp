@@ -19,14 +19,14 @@ std::vector<OptionSpec> wall_and_fluid()
       {"cavity_mean", OptionType::real, "0", "Pa", "mean pressure of law pulse"},
       {"cavity_amplitude", OptionType::real, "0", "Pa", "amplitude of law pulse (a sine)"},
       positive("cavity_period", "1", "s", "period of law pulse"),
-      word(
-          "cavity_table", "",
+      file(
+          "cavity_table",
           "CSV (columns pressure,volume in Pa, m^3; nowhere rising, only differences count) of law "
           "table"),
       positive("cavity_bulk_modulus", "2.2e9", "Pa", "bulk modulus of law bulk"),
       positive("cavity_ambient_pressure", "101325", "Pa",
                "absolute pressure where pressures are 0, for law gas"),
-      word("cavity_curve", "",
+      file("cavity_curve",
            "CSV (columns time,factor) that scales a given pressure, or the amount of fluid"),
       not_negative(
           "cavity_volume", "0", "m^3",
@@ -50,7 +50,7 @@ std::vector<OptionSpec> model_and_solver()
       positive("cavity_tolerance", "1e-12", "1", "volume error as a part of the volume"),
       not_negative("cavity_gain", "0", "Pa",
                    "K_p of solver proportional; 0 = from a sweep of the cavity at rest"),
-      count("cavity_max_updates", "1000", 1, "pressure updates in one step"),
+      count("cavity_max_updates", "1000", 1, 1e9, "pressure updates in one step"),
       not_negative("cavity_alarm", "0", "Pa",
                    "change of pressure since the start that sets the alarm; 0 = off"),
   };
@@ -65,7 +65,7 @@ void add_edges(std::vector<OptionSpec>& t)
       flag("edge_<edge>_valve", "flow only from FROM to TO"),
       {"edge_<edge>_flow", OptionType::real, "0", "m^3/s",
        "prescribed flow from FROM to TO, through the needle when there is one"},
-      word("edge_<edge>_curve", "", "CSV (columns time,factor) that scales the prescribed flow"),
+      file("edge_<edge>_curve", "CSV (columns time,factor) that scales the prescribed flow"),
       word("edge_<edge>_needle", "",
            "needle that opens the edge when its tip comes through the wall"),
       not_negative("edge_<edge>_gap", "0", "m",
@@ -92,8 +92,8 @@ void add_cavity_options(std::vector<OptionSpec>& t)
   t.push_back(word("pv_cavity", "", "cavity of -analysis pv_curve; by default the first"));
   t.push_back(positive("pv_low", "0.7", "1", "smallest volume of the curve, part of the mesh's"));
   t.push_back(positive("pv_high", "1.3", "1", "largest one"));
-  t.push_back(count("pv_points", "25", 3, "points of the curve"));
-  t.push_back(count("pv_pieces", "4", 1, "straight pieces of the second fit"));
+  t.push_back(count("pv_points", "25", 3, 10000, "points of the curve"));
+  t.push_back(count("pv_pieces", "4", 1, 1000, "straight pieces of the second fit"));
 }
 
 }  // namespace trocar::driver

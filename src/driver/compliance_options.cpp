@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "driver/option_source.hpp"
+#include "driver/petsc_options.hpp"
 
 namespace trocar::driver {
 

@@ -115,7 +115,10 @@ void report_error(const Simulation& simulation, Recorder& recorder, const Log& l
     log.note("  for a target of " + core::shown(100.0 * target) + " % edges must be about " +
              core::shown(std::pow(relative / target, scenario.mesh.quadratic() ? 0.5 : 1.0)) +
              " times shorter (smooth stress)");
-  if (scenario.output.size_field.empty() || !(all > 0.0)) return;
+  if (scenario.output.size_field.empty()) return;
+  if (!(all > 0.0))
+    throw core::option_error(
+        "option -error_size_field: nothing is strained, so there is no error to take sizes from");
   const VecX sizes = wanted_sizes(scenario.mesh, errors, energy + all, target);
   base::on_root(simulation.space().comm(),
                 [&] { io::write_size_field(scenario.output.size_field, scenario.mesh, sizes); });

@@ -18,6 +18,8 @@ const char* type_name(OptionType type)
       return "flag";
     case OptionType::text:
       return "text";
+    case OptionType::file:
+      return "file";
     case OptionType::choice:
       return "choice";
     case OptionType::names:
@@ -41,8 +43,8 @@ void print_help(std::ostream& out)
   out << "usage: mpirun -n RANKS trocar -options_file FILE.opts [-option value …]\n"
          "       trocar -help | -help_markdown | -version\n\n"
          "Options (SI units). <volume>, <surf>, <needle> stand for names of yours; an option with\n"
-         "such a name overrides the one without. PETSc's own options work too: -tissue_ksp_*,\n"
-         "-tissue_pc_*, -tissue_mat_mumps_*, -log_view, …\n\n";
+         "such a name overrides the one without. PETSc's options of the tissue's solver work too:\n"
+         "-tissue_ksp_*, -tissue_pc_*, -tissue_mat_mumps_*; and -log_view.\n\n";
   for (const OptionSpec& spec : option_table()) {
     out << "  -" << spec.name << " <" << type_name(spec.type) << ">  default "
         << (spec.fallback.empty() ? "\"\"" : spec.fallback);
@@ -61,7 +63,19 @@ void print_markdown(std::ostream& out)
          "option with such a name overrides the one without. Order of precedence: command line,\n"
          "`PETSC_OPTIONS`, options file. Unknown options end the run with code 64.\n\n"
          "The tissue's linear solver takes PETSc's options with the prefix `-tissue_`:\n"
-         "`-tissue_ksp_type cg -tissue_pc_type gamg`, `-tissue_mat_mumps_icntl_14 80`, …\n\n"
+         "`-tissue_ksp_type cg -tissue_pc_type gamg`, `-tissue_mat_mumps_icntl_14 80`, … (`ksp`, "
+         "`pc`,\n"
+         "`mat`, `mg`, `sub`), with numbers and plain words as values; what they show goes to the\n"
+         "terminal. So do `-log_view`, `-malloc_view`, `-malloc_dump` and `-objects_dump`, which "
+         "take no\n"
+         "value; `-malloc_debug` and `-fp_trap` are switches. No other option of PETSc is "
+         "taken.\n\n"
+         "In an options file any number of options stand on a line, `#` begins a comment, values "
+         "with\n"
+         "blanks stand in double quotes, the cells of a vector may have blanks between them, and\n"
+         "`-options_file` names another one. Files are looked for in the working folder, then "
+         "beside the\n"
+         "options file that names them.\n\n"
          "| option | type | default | unit | range or choices | meaning |\n"
          "|---|---|---|---|---|---|\n";
   for (const OptionSpec& spec : option_table())

@@ -28,13 +28,18 @@ inline OptionSpec poisson(const char* name, const char* fallback)
 {
   return {name, OptionType::real, fallback, "1", "Poisson's ratio", -1.0, 0.5, true, true};
 }
-inline OptionSpec count(const char* name, const char* fallback, double low, const char* help)
+inline OptionSpec count(const char* name, const char* fallback, double low, double high,
+                        const char* help)
 {
-  return {name, OptionType::integer, fallback, "1", help, low, 1e9, false, false};
+  return {name, OptionType::integer, fallback, "1", help, low, high, false, false};
 }
 inline OptionSpec word(const char* name, const char* fallback, const char* help)
 {
   return {name, OptionType::text, fallback, "", help};
+}
+inline OptionSpec file(const char* name, const char* help)
+{
+  return {name, OptionType::file, "", "", help};
 }
 inline OptionSpec list(const char* name, const char* help)
 {

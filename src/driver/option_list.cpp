@@ -8,7 +8,7 @@ namespace {
 std::vector<OptionSpec> general_options()
 {
   return {
-      word("mesh", "", "Gmsh file (2.2 or 4.1, ascii or binary)"),
+      file("mesh", "Gmsh file (2.2 or 4.1, ascii or binary)"),
       positive("mesh_scale", "1", "1", "factor on the mesh's coordinates, 1e-3 for millimetres"),
       choice("analysis", "dynamic", {"dynamic", "static", "pv_curve"},
              "steps in time; equilibrium: one, or a quasi-static path with time_end; or "
@@ -68,10 +68,10 @@ void add_boundary(std::vector<OptionSpec>& t)
       vector("boundary_<surf>_displacement", "free,free,free", "m",
              "prescribed displacement of a surface or point group, 'free' per axis"),
       vector("boundary_<surf>_traction", "0,0,0", "Pa", "dead traction on a physical surface"),
-      word("boundary_<surf>_field", "",
+      file("boundary_<surf>_field",
            "CSV (columns node,x,y,z: Gmsh's node tag and displacement [m]) for a displacement that "
            "differs from node to node"),
-      word("boundary_<surf>_curve", "",
+      file("boundary_<surf>_curve",
            "CSV (columns time,factor) that scales displacement and traction of the group"),
   };
   t.insert(t.end(), boundary.begin(), boundary.end());
@@ -90,7 +90,7 @@ void add_needles(std::vector<OptionSpec>& t)
       positive("needle_young", "2e11", "Pa", "Young's modulus"),
       poisson("needle_poisson", "0.3"),
       not_negative("needle_density", "0", "kg/m^3", "0 = neither weight nor inertia"),
-      count("needle_elements", "20", 1, "beam elements"),
+      count("needle_elements", "20", 1, 5000, "beam elements"),
       {"needle_bevel", OptionType::real, "0", "rad",
        "angle between the tip's face and the axis: tissue that is cut pushes the tip away along "
        "the "
@@ -105,7 +105,7 @@ void add_needles(std::vector<OptionSpec>& t)
                    "velocity of withdrawal, until the end of the run; 0 = never"),
       not_negative("needle_inserted", "0", "m",
                    "depth of the tip at the start, coupled on the undeformed mesh"),
-      word("needle_trajectory", "",
+      file("needle_trajectory",
            "CSV of the base: time,x,y,z[,dx,dy,dz[,roll]]; replaces velocity, depth, hold"),
   };
   for (const OptionSpec& spec : needle) with_override(t, spec, "<needle>");
@@ -167,9 +167,9 @@ void add_constraint(std::vector<OptionSpec>& t)
       choice("constraint_solver", "auto", {"auto", "pgs", "hybrid", "active_set", "interior_point"},
              "solver of the dense constraint problem"),
       positive("constraint_tolerance", "1e-9", "m", "stop at this residual (or step norm)"),
-      count("constraint_max_iterations", "1000", 1, "sweeps or factorisations"),
+      count("constraint_max_iterations", "1000", 1, 1e9, "sweeps or factorisations"),
       count(
-          "constraint_direction_max", "1", 1,
+          "constraint_direction_max", "1", 1, 1000,
           "times per linearisation that constraint directions follow the bending needle, at most; "
           "fewer when the lateral gaps are closed; 1 freezes them as in the papers"),
       choice("constraint_norm", "residual", {"residual", "step"},
@@ -196,7 +196,7 @@ void add_compliance(std::vector<OptionSpec>& t)
              "keep columns from step to step as long as that is exact; or, as in the needle paper, "
              "meet the laws with those of a factor that some steps of turning tissue share; or "
              "build all in every step"),
-      count("compliance_stale_steps", "10", 1,
+      count("compliance_stale_steps", "10", 1, 1e9,
             "linearisations that share a factor with compliance_reuse stale"),
       flag("compliance_stale_error",
            "with compliance_reuse stale, solve every step exactly as well and record the worst "
@@ -205,7 +205,7 @@ void add_compliance(std::vector<OptionSpec>& t)
           "compliance_lag", "1e-8", "1",
           "equilibrium, as a part of the load, that a step of turning tissue must reach with "
           "the factor of an earlier one, by several sweeps; 0 = factor in every step"),
-      count("compliance_tube", "1", 0,
+      count("compliance_tube", "1", 0, 100,
             "layers of nodes around the needles' planned paths that are eliminated last, so that "
             "their columns are a table; at most 3000 dofs and 10 % more work for the factor; 0 = "
             "off"),
@@ -217,7 +217,7 @@ void add_output(std::vector<OptionSpec>& t)
 {
   const std::vector<OptionSpec> rest{
       word("output_dir", "results", "folder of the results"),
-      count("output_every", "1", 1, "field files every so many steps"),
+      count("output_every", "1", 1, 1e9, "field files every so many steps"),
       [] {
         OptionSpec spec =
             list("output_fields",
@@ -229,12 +229,15 @@ void add_output(std::vector<OptionSpec>& t)
       flag("output_energy", "energy account in log and histories: one more element loop per step"),
       flag("error_estimate",
            "estimate the discretisation error at the end of the run from the stress, by volume"),
-      not_negative("error_target", "0", "1",
-                   "energy error to be told how far off the run is; 0 = none"),
+      {"error_target", OptionType::real, "0", "1",
+       "energy error to be told how far off the run is, from 1e-6 on; 0 = none", 0.0, 1.0, false,
+       false},
       flag("locking_gauge",
            "compare every cavity's dP/dV with that of p2_bbar on the same mesh before the run"),
-      word("error_size_field", "",
-           "file for the edge lengths of a mesh with that error, a background field for Gmsh"),
+      word(
+          "error_size_field", "",
+          "file for the edge lengths of a mesh with that error, a background field for Gmsh in the "
+          "mesh's own unit"),
       flag("check", "stop after set-up: options, mesh, operator"),
       flag("quiet", "no progress lines"),
   };

@@ -1,78 +1,144 @@
 #include "driver/option_source.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "base/petsc.hpp"
+#include "core/option_text.hpp"
 #include "core/words.hpp"
 #include "driver/option_list.hpp"
+#include "driver/petsc_options.hpp"
 
 namespace trocar::driver {
 namespace {
 
-/// Words of `text` that start with a dash and a letter, without the dash.
-std::vector<std::string> dashed_words(const std::string& text)
+namespace fs = std::filesystem;
+using core::WrittenOption;
+
+constexpr std::uintmax_t largest_file = 16'000'000;  ///< [B], of options or CSV
+
+/// The text of a file; a Failure of this code where it cannot be read.
+std::string text_of(const std::string& file, const std::string& before, core::ExitCode code)
 {
-  std::vector<std::string> words;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream cells(line);
-    for (std::string word; cells >> word;) {
-      if (word.front() == '#') break;
-      if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])))
-        words.push_back(word.substr(1));
-    }
-  }
-  return words;
+  const auto failure = [&](const std::string& why) {
+    return core::Failure(code, before + why + " '" + core::printable(file) + "'");
+  };
+  std::error_code trouble;
+  const fs::file_status status = fs::status(file, trouble);
+  if (!fs::exists(status)) throw failure("no such file");
+  if (!fs::is_regular_file(status)) throw failure("this is no file that can be read:");
+  if (fs::file_size(file, trouble) > largest_file) throw failure("too large (16 MB at most):");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || stream.bad()) throw failure("this cannot be read:");
+  return text.str();
 }
 
-bool holds(const std::vector<std::string>& words, const std::string& name)
+/// A file that an option names, from the working folder or from beside the options file.
+std::string found(const std::string& file, const fs::path& beside)
 {
-  for (const std::string& word : words)
-    if (word == name) return true;
-  return false;
+  std::error_code ignored;
+  if (file.empty() || fs::exists(file, ignored)) return file;
+  const fs::path other = beside / file;
+  return !beside.empty() && fs::exists(other, ignored) ? other.string() : file;
 }
 
-/// Names of the PETSc options people give most, for suggestions only.
-std::vector<std::string> known_names()
-{
-  std::vector<std::string> names;
-  for (const core::OptionSpec& spec : option_table()) names.push_back("-" + spec.name);
-  for (const char* name :
-       {"ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "ksp_view",
-        "ksp_converged_reason", "ksp_norm_type", "pc_type", "pc_factor_mat_solver_type",
-        "pc_gamg_threshold", "pc_hypre_type", "mg_levels_pc_type", "mg_levels_ksp_type",
-        "mat_mumps_icntl_14", "mat_mumps_icntl_7", "sub_pc_type"})
-    names.push_back(std::string("-tissue_") + name);
-  names.insert(names.end(), {"-log_view", "-options_file", "-help", "-options_view"});
-  return names;
-}
-
-struct Unused
-{
-  std::vector<std::string> names, values;
-};
-
-Unused unused_options()
-{
-  PetscInt count = 0;
-  char **names = nullptr, **values = nullptr;
-  TROCAR_PETSC(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  Unused unused;
-  for (PetscInt i = 0; i < count; ++i) {
-    unused.names.emplace_back(names[i]);
-    unused.values.emplace_back(values[i] ? values[i] : "");
-  }
-  TROCAR_PETSC(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
-  return unused;
-}
-
-bool in_table(const std::string& name)
+const core::OptionSpec* row_of(const std::string& name)
 {
   for (const core::OptionSpec& spec : option_table())
-    if (core::matches(spec, name)) return true;
-  return false;
+    if (core::matches(spec, name)) return &spec;
+  return nullptr;
+}
+
+/// Options of one source after the other, the weakest first.
+class Collector
+{
+ public:
+  explicit Collector(Invocation& invocation) : invocation_(invocation) {}
+
+  /// Takes those of one source, but for the files they name: these come first, as they are weaker.
+  void files_of(const std::vector<WrittenOption>& options)
+  {
+    for (const WrittenOption& one : options)
+      if (one.name == "options_file") include(one, {});
+  }
+  void take(const std::vector<WrittenOption>& options, const std::string& source,
+            const fs::path& beside = {})
+  {
+    for (const WrittenOption& one : options)
+      if (one.name != "options_file") take(one, source, beside);
+  }
+  const std::vector<WrittenOption>& petsc() const { return petsc_; }
+
+ private:
+  void take(const WrittenOption& one, const std::string& source, const fs::path& beside)
+  {
+    const core::OptionSpec* const row = row_of(one.name);
+    if (!row) {
+      petsc_.push_back(one);
+      return;
+    }
+    std::string value = core::value_of(one, row->type == core::OptionType::vector);
+    if (row->type == core::OptionType::file) value = found(value, beside);
+    invocation_.given[one.name] = {value, source, one.place};
+  }
+
+  void include(const WrittenOption& one, const fs::path& beside)
+  {
+    const std::string name = core::value_of(one, false);
+    if (name.empty()) throw core::option_error(core::label_of(one) + ": a file name must follow");
+    const std::string file = found(name, beside);
+    const std::string text = text_of(file, core::label_of(one) + ": ", core::ExitCode::options);
+    const fs::path path = fs::canonical(file);
+    if (std::find(open_.begin(), open_.end(), path) != open_.end())
+      throw core::option_error(core::label_of(one) + ": '" + core::printable(file) +
+                               "' includes itself");
+    open_.push_back(path);
+    invocation_.options_file += (invocation_.options_file.empty() ? "" : ",") + file;
+    invocation_.options_file_text += text;
+    const fs::path folder = fs::path(file).parent_path();
+    for (const WrittenOption& inner : core::parse_option_text(text, file))
+      inner.name == "options_file" ? include(inner, folder) : take(inner, "options file", folder);
+    open_.pop_back();
+  }
+
+  Invocation& invocation_;
+  std::vector<WrittenOption> petsc_;
+  std::vector<fs::path> open_;  ///< files that are being read
+};
+
+void collect(Invocation& invocation)
+{
+  const char* const variable = std::getenv("PETSC_OPTIONS");
+  std::istringstream cells(variable ? variable : "");
+  std::vector<std::string> words;
+  for (std::string word; cells >> word;) words.push_back(word);
+  const auto environment = core::parse_option_words(words, variable ? "PETSC_OPTIONS" : "");
+  words = invocation.arguments;
+  if (!words.empty()) words.erase(words.begin());  // the program's name
+  const auto arguments = core::parse_option_words(words, "");
+  Collector all(invocation);
+  all.files_of(environment);
+  all.files_of(arguments);
+  all.take(environment, "PETSC_OPTIONS");
+  all.take(arguments, "command line");
+  invocation.petsc = petsc_arguments(all.petsc());
+}
+
+void broadcast(Invocation& invocation, const base::Comm& comm)
+{
+  std::vector<std::string> cells;
+  for (const auto& [name, value] : invocation.given)
+    cells.insert(cells.end(), {name, value.value, value.source, value.place});
+  comm.broadcast(cells);
+  for (std::size_t i = 0; i + 3 < cells.size(); i += 4)
+    invocation.given[cells[i]] = {cells[i + 1], cells[i + 2], cells[i + 3]};
+  comm.broadcast(invocation.petsc);
+  comm.broadcast(invocation.options_file);
+  comm.broadcast(invocation.options_file_text);
 }
 
 }  // namespace
@@ -81,100 +147,17 @@ Invocation read_invocation(int argc, char** argv, const base::Comm& comm)
 {
   Invocation invocation;
   for (int i = 0; i < argc; ++i) invocation.arguments.emplace_back(argv[i]);
-  for (std::size_t i = 1; i + 1 < invocation.arguments.size(); ++i)
-    if (invocation.arguments[i] == "-options_file")
-      invocation.options_file = invocation.arguments[i + 1];
-  if (!invocation.arguments.empty() && invocation.arguments.back() == "-options_file")
-    throw core::option_error("option -options_file: a file name must follow");
-  base::on_root(comm, [&] {
-    const char* environment = std::getenv("PETSC_OPTIONS");
-    std::istringstream words(environment ? environment : "");
-    for (std::string word, file; words >> word;)
-      if (word == "-options_file" && words >> file && !std::ifstream(file))
-        throw core::option_error("PETSC_OPTIONS: -options_file: no such file '" + file + "'");
-    if (invocation.options_file.empty()) return;
-    std::ifstream stream(invocation.options_file);
-    if (!stream)
-      throw core::option_error("option -options_file: no such file '" + invocation.options_file +
-                               "'");
-    std::ostringstream text;
-    text << stream.rdbuf();
-    invocation.options_file_text = text.str();
-  });
-  comm.broadcast(invocation.options_file_text);
+  base::on_root(comm, [&] { collect(invocation); });
+  broadcast(invocation, comm);
   return invocation;
-}
-
-void apply_arguments(const Invocation& invocation)
-{
-  const auto& words = invocation.arguments;
-  const auto is_name = [&](std::size_t i) {
-    return i < words.size() && words[i].size() > 1 && words[i][0] == '-' &&
-           std::isalpha(static_cast<unsigned char>(words[i][1]));
-  };
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    if (!is_name(i) || words[i] == "-options_file") continue;
-    const bool has_value = i + 1 < words.size() && !is_name(i + 1);
-    TROCAR_PETSC(PetscOptionsSetValue(nullptr, words[i].c_str(),
-                                      has_value ? words[i + 1].c_str() : nullptr));
-  }
 }
 
 core::Csv read_csv(const std::string& file, const base::Comm& comm)
 {
   std::string text;
-  base::on_root(comm, [&] {
-    std::ifstream stream(file);
-    if (!stream) throw core::data_error(file + ": no such CSV file");
-    std::ostringstream all;
-    all << stream.rdbuf();
-    text = all.str();
-  });
+  base::on_root(comm, [&] { text = text_of(file, "", core::ExitCode::data); });
   comm.broadcast(text);
   return core::parse_csv(text, file);
-}
-
-std::map<std::string, core::OptionValue> take_options(const Invocation& invocation)
-{
-  const char* environment = std::getenv("PETSC_OPTIONS");
-  const auto from_environment = dashed_words(environment ? environment : "");
-  const auto from_file = dashed_words(invocation.options_file_text);
-  std::map<std::string, core::OptionValue> given;
-  const Unused options = unused_options();
-  for (std::size_t i = 0; i < options.names.size(); ++i) {
-    const std::string& name = options.names[i];
-    if (!in_table(name)) continue;
-    std::string source = "petscrc";
-    if (holds(invocation.arguments, "-" + name))
-      source = "command line";
-    else if (holds(from_environment, name))
-      source = "PETSC_OPTIONS";
-    else if (holds(from_file, name))
-      source = "options file";
-    PetscBool found = PETSC_FALSE;
-    char ignored[2];
-    TROCAR_PETSC(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), ignored,
-                                       sizeof ignored, &found));
-    given[name] = {options.values[i], source};
-  }
-  return given;
-}
-
-bool tissue_solver_given()
-{
-  for (const std::string& name : unused_options().names)
-    for (const char* start : {"tissue_ksp_", "tissue_pc_", "tissue_mat_"})
-      if (name.rfind(start, 0) == 0) return true;
-  return false;
-}
-
-void refuse_unused()
-{
-  for (const std::string& name : unused_options().names) {
-    if (in_table(name)) continue;
-    throw core::option_error("option -" + name + " is unknown" +
-                             core::did_you_mean("-" + name, known_names()));
-  }
 }
 
 }  // namespace trocar::driver

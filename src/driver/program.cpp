@@ -15,9 +15,11 @@
 #include "driver/locking_gauge.hpp"
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
+#include "driver/petsc_options.hpp"
 #include "driver/provenance.hpp"
 #include "driver/pv_curve.hpp"
 #include "driver/recorder.hpp"
+#include "driver/signals.hpp"
 #include "io/size_field.hpp"
 
 namespace trocar::driver {
@@ -86,9 +88,8 @@ class Clock
 void run_scene(int argc, char** argv, const base::Comm& comm)
 {
   const Invocation invocation = read_invocation(argc, argv, comm);
-  const base::PetscSession petsc(&argc, &argv);
-  apply_arguments(invocation);
-  core::Options options(option_table(), take_options(invocation));
+  const base::PetscSession petsc(invocation.petsc);
+  core::Options options(option_table(), invocation.given);
   const Scenario scenario = read_scenario(options, comm);
   const core::Stopwatch watch;
   Simulation simulation(scenario, comm);
@@ -96,7 +97,7 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   Log log(simulation);
   log.plan();
   simulation.prepare();
-  refuse_unused();
+  refuse_unused(simulation.tissue().describe_solver());
   log.set_up(watch.seconds());
   if (scenario.check_only) {
     log.note("check passed: nothing was run");
@@ -137,7 +138,8 @@ bool all_ranks_failed(MPI_Comm comm)
 int fail(const base::Comm& comm, MPI_Comm alarm, int code, const char* line)
 {
   const bool agreed = all_ranks_failed(alarm);
-  if (!agreed || comm.root()) std::fprintf(stderr, "trocar: error: %s\n", line);
+  if (!agreed || comm.root())
+    std::fprintf(stderr, "trocar: error: %s\n", core::printable(line, 700).c_str());
   if (!agreed) MPI_Abort(comm.get(), code);
   return code;
 }
@@ -167,6 +169,7 @@ int run_program(int argc, char** argv, MPI_Comm world)
   MPI_Comm_dup(world, &own);
   MPI_Comm_dup(world, &alarm);
   const base::Comm comm(own);
+  handle_signals(comm.root());
   try {
     run_scene(argc, argv, comm);
     return 0;

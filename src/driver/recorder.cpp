@@ -1,6 +1,7 @@
 #include "driver/recorder.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "driver/provenance.hpp"
 #include "driver/stress_fields.hpp"
@@ -252,7 +253,9 @@ Recorder::Recorder(const Simulation& simulation, const Invocation& invocation,
   base::on_root(simulation.space().comm(), [&] {
     const Scenario& scenario = simulation.scenario();
     results_.emplace(scenario.output.folder, scenario.mesh,
-                     provenance(simulation, invocation, options, solver), series_of(scenario));
+                     provenance(simulation, invocation, options, solver), series_of(scenario),
+                     static_cast<std::size_t>(step_count(scenario.time)) + 1);
+    if (!results_->remark().empty()) std::printf("note: %s\n", results_->remark().c_str());
   });
 }
 

@@ -177,10 +177,16 @@ OutputSettings read_output(Options& options)
 {
   OutputSettings output;
   output.folder = options.text("output_dir");
+  if (output.folder.empty())
+    throw core::option_error("option -output_dir: the name of a folder is missing");
   output.every = options.integer("output_every");
   output.quiet = options.flag("quiet");
   output.energy = options.flag("output_energy");
   output.error_target = options.real("error_target");
+  constexpr double least_target = 1e-6;  // nearer to round-off the estimate means nothing
+  if (output.error_target > 0.0 && output.error_target < least_target)
+    throw core::option_error("option -error_target: " + core::shown(output.error_target) +
+                             " is below 1e-6, which no estimate can tell");
   output.locking_gauge = options.flag("locking_gauge");
   output.size_field = options.text("error_size_field");
   if (!output.size_field.empty() && !(output.error_target > 0.0))

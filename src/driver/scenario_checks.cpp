@@ -39,6 +39,20 @@ void refuse_idle(const Scenario& scenario)
          "insertion_radius_correction: the eta law has a softness of its own (-insertion_eta)");
 }
 
+/// Places closer than anyone could want would only fill the memory with rows.
+void refuse_crowded(const Scenario& scenario)
+{
+  constexpr double most_points = 1e5;
+  const insertion::PlacementSettings& placement = scenario.insertion.placement;
+  if (placement.placement != insertion::Placement::spacing) return;
+  for (const needle::NeedleSettings& needle : scenario.needles)
+    if (needle.motion.length > most_points * placement.spacing)
+      throw core::option_error("option -insertion_spacing: " + core::shown(placement.spacing) +
+                               " m would put " +
+                               core::shown(needle.motion.length / placement.spacing) +
+                               " points on needle '" + needle.name + "', more than 1e5");
+}
+
 void add_warnings(Scenario& scenario)
 {
   const TimeSettings& time = scenario.time;
@@ -61,6 +75,7 @@ void check_scenario(Scenario& scenario)
 {
   refuse_dashpots_without_time(scenario);
   refuse_idle(scenario);
+  refuse_crowded(scenario);
   add_warnings(scenario);
 }
 

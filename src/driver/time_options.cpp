@@ -4,6 +4,8 @@
 #include <map>
 #include <sstream>
 
+#include "core/words.hpp"
+
 namespace trocar::driver {
 namespace {
 
@@ -24,13 +26,28 @@ int read_newton(core::Options& options)
   if (text == "auto") return 0;
   std::istringstream words(text);
   int most = 0;
-  if (!(words >> most) || !words.eof() || most < 1)
+  constexpr int limit = 1'000'000;
+  if (!(words >> most) || !words.eof() || most < 1 || most > limit)
     throw core::option_error("option -time_newton_max: '" + text +
-                             "' is neither auto nor a whole number of at least 1");
+                             "' is neither auto nor a whole number from 1 to 1000000");
   return most;
 }
 
 }  // namespace
+
+/// A run without a step, or with more than anyone could want, is a slip of the pen.
+static void check_steps(const TimeSettings& time)
+{
+  constexpr double most_steps = 1e9, within = 1.0 - 1e-6;
+  if (time.analysis == Analysis::pv_curve || time.end == 0.0) return;
+  if (time.end < within * time.asked)
+    throw core::option_error("option -time_end: the end, " + core::shown(time.end) +
+                             " s, lies within the first step, -time_step " +
+                             core::shown(time.asked));
+  if (!(time.end / time.asked <= most_steps))
+    throw core::option_error("option -time_step: " + core::shown(time.end / time.asked) +
+                             " steps to the end, more than 1e9");
+}
 
 TimeSettings read_time(core::Options& options)
 {
@@ -41,6 +58,7 @@ TimeSettings read_time(core::Options& options)
   time.analysis = analyses.at(options.text("analysis"));
   time.asked = options.real("time_step");
   time.end = options.real("time_end");
+  check_steps(time);
   time.step = equal_steps(time.asked, time.end);
   time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
   time.second_order = options.text("time_scheme") == "bdf2";

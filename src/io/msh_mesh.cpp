@@ -53,6 +53,7 @@ class Assembly
 Assembly::Assembly(const MshFile& file, double scale) : file_(file)
 {
   mesh_.file = file.file;
+  mesh_.unit = scale;
   std::ostringstream hash;
   hash << std::hex << std::setw(16) << std::setfill('0') << file.hash;
   mesh_.hash = hash.str();

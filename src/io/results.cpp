@@ -1,9 +1,11 @@
 #include "io/results.hpp"
 
+#include <fcntl.h>
+
+#include <algorithm>
 #include <cstdint>
-#include <cstdio>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "core/failure.hpp"
 #include "mesh/quadratic.hpp"
@@ -11,27 +13,13 @@
 namespace trocar::io {
 namespace {
 
-namespace fs = std::filesystem;
+/// Rows that room is made for at most before they are there: runs may be stopped long before.
+constexpr std::size_t most_ahead = 4096;
 
-void prepare_folder(const std::string& folder)
+template <class Number>
+std::string_view bytes_of(const Number* first, std::size_t count)
 {
-  std::error_code error;
-  fs::create_directories(folder + "/fields", error);
-  if (error) throw core::output_error("cannot make folder " + folder + ": " + error.message());
-  // Steps of an earlier run would mix with ours in ParaView.
-  for (const auto& entry : fs::directory_iterator(folder + "/fields", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("step_", 0) == 0) fs::remove(entry.path(), error);
-  }
-  if (error) throw core::output_error("cannot clear " + folder + "/fields: " + error.message());
-}
-
-void rename_into_place(const std::string& from, const std::string& to)
-{
-  if (std::rename(from.c_str(), to.c_str()) != 0)
-    throw core::output_error("cannot rename " + from + " to " + to);
-  const fs::path folder = fs::path(to).parent_path();
-  base::sync_to_disk(folder.empty() ? "." : folder.string());
+  return {reinterpret_cast<const char*>(first), count * sizeof(Number)};
 }
 
 std::vector<std::int64_t> as_integers(const std::vector<double>& values)
@@ -41,70 +29,123 @@ std::vector<std::int64_t> as_integers(const std::vector<double>& values)
 
 }  // namespace
 
-void write_atomically(const std::string& path, const std::string& text)
-{
-  const std::string temporary = path + ".tmp";
-  std::ofstream stream(temporary);
-  stream << text;
-  stream.close();
-  if (!stream) throw core::output_error("cannot write " + temporary);
-  base::sync_to_disk(temporary);
-  rename_into_place(temporary, path);
-}
-
 Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Provenance& provenance,
-                 const std::vector<Series>& series)
-    : folder_((prepare_folder(folder), folder)),
-      run_(base::H5File::create(folder + "/run.h5")),
+                 const std::vector<Series>& series, std::size_t rows)
+    : folder_(folder),
       series_(series),
-      mesh_{mesh.x.size(), mesh.tets.size(), mesh.nodes_per_tet()}
+      mesh_{mesh.x.size(), mesh.tets.size(), mesh.nodes_per_tet()},
+      room_(std::clamp<std::size_t>(rows, 1, most_ahead))
 {
-  run_.attribute("/", "schema", std::string("trocar-1"));
-  write_mesh(mesh);
-  for (const auto& [name, text] : provenance.texts) run_.write_text("/provenance/" + name, text);
+  base::H5File file = base::H5File::create(run_file());
+  file.attribute("/", "schema", std::string("trocar-1"));
+  write_mesh(file, mesh);
+  for (const auto& [name, text] : provenance.texts) file.write_text("/provenance/" + name, text);
   for (const auto& [name, words] : provenance.tables)
-    run_.write_words("/provenance/" + name, words);
-  for (const Series& one : series_)
-    run_.create_series("/history/" + one.name, one.columns, one.units);
-  run_.make_group("/ledger");
+    file.write_words("/provenance/" + name, words);
+  add_series(file);
+  file.make_group("/ledger");
   for (const auto& [name, count] : core::Ledger().entries())
-    run_.attribute("/ledger", std::string(name), count);
-  run_.flush();
+    file.attribute("/ledger", std::string(name), count);
+  folder_.clear();
+  place(file);
 }
 
-void Results::write_mesh(const mesh::Mesh& mesh)
+Results::~Results()
+{
+  try {
+    write_frames();
+  } catch (const core::Failure&) {  // somebody is on the way out with a reason of his own
+  }
+}
+
+void Results::add_series(base::H5File& file) const
+{
+  for (const Series& one : series_)
+    file.create_series("/history/" + one.name, one.columns, room_, one.units);
+}
+
+/// Puts the file where run.h5 is and opens it for what is added byte by byte.
+void Results::place(base::H5File& file)
+{
+  places_.clear();
+  std::string bytes = file.bytes();
+  for (const Series& one : series_)
+    places_.push_back(file.series_place("/history/" + one.name, one.columns, bytes));
+  ledger_places_.clear();
+  for (const auto& [name, count] : core::Ledger().entries())
+    ledger_places_.push_back(file.attribute_place("/ledger", std::string(name), bytes));
+  for (const base::SeriesPlace& one : places_)
+    std::memcpy(bytes.data() + one.rows, &rows_, sizeof rows_);
+  base::replace_file(run_file(), bytes);
+  run_ = base::Descriptor(run_file(), O_RDWR);
+}
+
+void Results::write_mesh(base::H5File& file, const mesh::Mesh& mesh) const
 {
   std::vector<double> x;
   for (const auto& p : mesh.x) x.insert(x.end(), p.data(), p.data() + 3);
   std::vector<std::int64_t> tets;
   for (int t = 0; t < mesh.tet_count(); ++t)
     for (int node : mesh::nodes_of(mesh, t)) tets.push_back(node);
-  run_.write("/mesh/coordinates", x, 3, "m");
-  run_.write("/mesh/tets", tets, static_cast<std::size_t>(mesh_.nodes_per_tet), "1");
-  run_.write("/mesh/region", std::vector<std::int64_t>(mesh.region.begin(), mesh.region.end()), 0,
+  file.write("/mesh/coordinates", x, 3, "m");
+  file.write("/mesh/tets", tets, static_cast<std::size_t>(mesh_.nodes_per_tet), "1");
+  file.write("/mesh/region", std::vector<std::int64_t>(mesh.region.begin(), mesh.region.end()), 0,
              "1");
-  run_.write("/mesh/node_tag",
+  file.write("/mesh/node_tag",
              std::vector<std::int64_t>(mesh.node_tag.begin(), mesh.node_tag.end()), 0, "1");
-  run_.write("/mesh/elem_tag",
+  file.write("/mesh/elem_tag",
              std::vector<std::int64_t>(mesh.elem_tag.begin(), mesh.elem_tag.end()), 0, "1");
-  run_.write_words("/mesh/volumes", mesh.volumes);
+  file.write_words("/mesh/volumes", mesh.volumes);
+}
+
+/// The same file with twice the room for rows.
+void Results::make_room()
+{
+  const std::size_t old_room = room_;
+  const std::uint64_t size = std::filesystem::file_size(run_file());
+  const base::H5File old =
+      base::H5File::of_bytes(run_file(), run_.read_at(0, static_cast<std::size_t>(size)));
+  const std::vector<base::SeriesPlace> old_places = places_;
+  room_ = 2 * old_room;
+  base::H5File file = base::H5File::create(run_file());
+  file.attribute("/", "schema", std::string("trocar-1"));
+  for (const std::string& name : old.top())
+    if (name != "history") file.copy(old, "/" + name);
+  add_series(file);
+  std::string bytes = file.bytes();
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const base::SeriesPlace to =
+        file.series_place("/history/" + series_[i].name, series_[i].columns, bytes);
+    const std::size_t length = rows_ * to.columns * sizeof(double);
+    std::memcpy(bytes.data() + to.data, run_.read_at(old_places[i].data, length).data(), length);
+  }
+  base::H5File filled = base::H5File::of_bytes(run_file(), std::move(bytes));
+  place(filled);
 }
 
 void Results::append_history(const std::vector<std::vector<double>>& row,
                              const core::Ledger& ledger)
 {
   for (std::size_t i = 0; i < series_.size(); ++i)
-    run_.append("/history/" + series_[i].name, row[i]);
-  for (const auto& [name, count] : ledger.entries())
-    run_.attribute("/ledger", std::string(name), count);
-  run_.flush();
+    base::refuse_nan(row[i], "/history/" + series_[i].name);
+  if (rows_ == room_) make_room();
+  for (std::size_t i = 0; i < series_.size(); ++i)
+    run_.write_at(places_[i].data + rows_ * places_[i].columns * sizeof(double),
+                  bytes_of(row[i].data(), row[i].size()));
+  ++rows_;
+  for (const base::SeriesPlace& one : places_) run_.write_at(one.rows, bytes_of(&rows_, 1));
+  std::size_t i = 0;
+  for (const auto& [name, count] : ledger.entries()) {
+    const std::int64_t value = count;
+    run_.write_at(ledger_places_[i++], bytes_of(&value, 1));
+  }
 }
 
 void Results::write_fields(int step, double time, const std::vector<Field>& fields,
                            const std::vector<Curve>& curves, const std::vector<std::string>& notes)
 {
-  const std::string path = folder_ + "/" + step_file(step);
-  auto file = base::H5File::create(path + ".tmp");
+  const std::string path = folder_.path() + "/" + step_file(step);
+  auto file = base::H5File::create(path);
   XdmfFrame frame{step, time, {}, {}};
   for (const Field& field : fields) {
     if (field.integer)
@@ -122,22 +163,35 @@ void Results::write_fields(int step, double time, const std::vector<Field>& fiel
   }
   file.write("/time", std::vector<double>{time}, 0, "s");
   for (const std::string& note : notes) file.attribute("/", note, std::int64_t{1});
-  file.close();
-  rename_into_place(path + ".tmp", path);
+  base::replace_file(path, file.bytes());
   frames_.push_back(std::move(frame));
-  write_atomically(folder_ + "/run.xdmf", xdmf_text(mesh_, frames_));
+  // Written anew each time run.xdmf would cost the square of the steps: from some on it lags behind
+  // by a part of them until the run ends, however it does.
+  constexpr std::size_t at_once = 64, part = 8;
+  if (frames_.size() <= at_once || frames_.size() >= shown_ + shown_ / part) write_frames();
+}
+
+void Results::write_frames()
+{
+  if (shown_ == frames_.size()) return;
+  base::replace_file(folder_.path() + "/run.xdmf", xdmf_text(mesh_, frames_));
+  shown_ = frames_.size();
 }
 
 void Results::write_table(const std::string& path, const std::vector<double>& values,
                           const std::string& units)
 {
-  run_.write(path, values, 0, units);
-  run_.flush();
+  const std::uint64_t size = std::filesystem::file_size(run_file());
+  base::H5File file =
+      base::H5File::of_bytes(run_file(), run_.read_at(0, static_cast<std::size_t>(size)));
+  file.write(path, values, 0, units);
+  place(file);
 }
 
 void Results::close()
 {
-  run_.close();
+  write_frames();
+  run_.sync();
 }
 
 }  // namespace trocar::io

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "base/comm.hpp"
+#include "base/files.hpp"
 #include "base/hdf5.hpp"
 #include "core/ledger.hpp"
+#include "io/output_folder.hpp"
 #include "io/xdmf.hpp"
 #include "mesh/mesh.hpp"
 
@@ -50,13 +52,18 @@ struct Provenance
 };
 
 /// The result folder: run.h5 (mesh, provenance, histories, ledger), fields/step_N.h5, run.xdmf.
-/// Lives on rank 0 alone; every call throws Failure (74) there. A run that is killed leaves every
-/// finished step readable: field files are renamed into place, histories only grow.
+/// Lives on rank 0 alone; every call throws Failure (74) there. Whatever the moment at which a run
+/// is killed or its disk is full, every step that was written before opens: run.h5 has room for
+/// rows ahead, into which their numbers go before their count does; all else is put in place whole.
 class Results
 {
  public:
+  /// `rows`: expected in the histories, which room is made for; more may come.
   Results(const std::string& folder, const mesh::Mesh& mesh, const Provenance& provenance,
-          const std::vector<Series>& series);
+          const std::vector<Series>& series, std::size_t rows = 1);
+  ~Results();
+  Results(const Results&) = delete;
+  Results& operator=(const Results&) = delete;
 
   /// One row in every series, in the order they were declared.
   void append_history(const std::vector<std::vector<double>>& row, const core::Ledger& ledger);
@@ -64,21 +71,31 @@ class Results
   /// A field file for this time; `step` counts accepted steps.
   void write_fields(int step, double time, const std::vector<Field>& fields,
                     const std::vector<Curve>& curves, const std::vector<std::string>& notes);
-  /// A dataset of its own in run.h5, once the run is over.
+  /// A dataset of its own in run.h5.
   void write_table(const std::string& path, const std::vector<double>& values,
                    const std::string& units);
   void close();
 
+  /// What is to be said of the folder; "" mostly.
+  const std::string& remark() const { return folder_.remark(); }
+
  private:
-  void write_mesh(const mesh::Mesh& mesh);
-  std::string folder_;
-  base::H5File run_;
+  std::string run_file() const { return folder_.path() + "/run.h5"; }
+  void write_mesh(base::H5File& file, const mesh::Mesh& mesh) const;
+  void add_series(base::H5File& file) const;
+  void place(base::H5File& file);
+  void make_room();
+  void write_frames();
+
+  OutputFolder folder_;
   std::vector<Series> series_;
   XdmfMesh mesh_;
   std::vector<XdmfFrame> frames_;
+  std::size_t shown_ = 0;  ///< frames that run.xdmf has
+  std::uint64_t rows_ = 0, room_ = 0;
+  base::Descriptor run_;
+  std::vector<base::SeriesPlace> places_;
+  std::vector<std::uint64_t> ledger_places_;
 };
-
-/// Writes text to a temporary name, syncs it and renames it over `path`. Throws Failure (74).
-void write_atomically(const std::string& path, const std::string& text);
 
 }  // namespace trocar::io

@@ -1,20 +1,22 @@
 #include "io/size_field.hpp"
 
-#include <cstdio>
-#include <fstream>
+#include <unistd.h>
+
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
-#include "io/results.hpp"
+#include "base/files.hpp"
+#include "core/failure.hpp"
 
 namespace trocar::io {
 
 void require_size_field(const std::string& file)
 {
-  const std::string temporary = file + ".tmp";
-  if (!std::ofstream(temporary))
-    throw core::output_error("option -error_size_field: cannot write " + temporary);
-  std::remove(temporary.c_str());
+  const auto slash = file.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : file.substr(0, slash + 1);
+  if (::access(folder.c_str(), W_OK) != 0 || std::filesystem::is_directory(file))
+    throw core::output_error("option -error_size_field: cannot write " + file);
 }
 
 void write_size_field(const std::string& file, const mesh::Mesh& mesh, const core::VecX& sizes)
@@ -24,15 +26,15 @@ void write_size_field(const std::string& file, const mesh::Mesh& mesh, const cor
   for (const mesh::Tet& tet : mesh.tets) {
     text << "SS(";
     for (std::size_t a = 0; a < 4; ++a) {
-      const mesh::Vec3& x = mesh.x[static_cast<std::size_t>(tet[a])];
+      const mesh::Vec3 x = mesh.x[static_cast<std::size_t>(tet[a])] / mesh.unit;
       text << (a ? "," : "") << x.x() << "," << x.y() << "," << x.z();
     }
     text << "){";
-    for (std::size_t a = 0; a < 4; ++a) text << (a ? "," : "") << sizes[tet[a]];
+    for (std::size_t a = 0; a < 4; ++a) text << (a ? "," : "") << sizes[tet[a]] / mesh.unit;
     text << "};\n";
   }
   text << "};\n";
-  write_atomically(file, text.str());
+  base::replace_file(file, text.str());
 }
 
 }  // namespace trocar::io

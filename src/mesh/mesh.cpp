@@ -158,6 +158,9 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
 {
   comm.broadcast(mesh.file);
   comm.broadcast(mesh.hash);
+  std::vector<double> unit{mesh.unit};
+  comm.broadcast(unit);
+  mesh.unit = unit.front();
   broadcast_points(mesh.x, comm);
   broadcast_rows(mesh.tets, comm);
   broadcast_rows(mesh.middles, comm);

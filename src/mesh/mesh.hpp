@@ -45,6 +45,7 @@ struct Mesh
 {
   std::string file;
   std::string hash;              ///< FNV-1a of the file's bytes
+  double unit = 1.0;             ///< of the file's coordinates [m]
   std::vector<Vec3> x;           ///< [m], reference; row i = i-th smallest Gmsh node tag
   std::vector<Tet> tets;         ///< corners, positively oriented; row i = i-th smallest tet tag
   std::vector<Middles> middles;  ///< nodes on the edges `tet_edges`; empty: linear tets

@@ -274,7 +274,7 @@ int main(int argc, char** argv)
   MPI_Init(&argc, &argv);
   int code = 0;
   {
-    const trocar::base::PetscSession petsc(&argc, &argv);
+    const trocar::base::PetscSession petsc({});
     code = trocar::run(argc, argv);
   }
   MPI_Finalize();

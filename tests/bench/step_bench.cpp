@@ -183,7 +183,7 @@ int main(int argc, char** argv)
 {
   MPI_Init(&argc, &argv);
   {
-    const trocar::base::PetscSession petsc(&argc, &argv);
+    const trocar::base::PetscSession petsc({});
     trocar::run({argc > 1 ? std::atoi(argv[1]) : 4000}, argc > 2 ? std::atof(argv[2]) : 2.0,
                 argc > 3 && std::atoi(argv[3]) != 0);
   }

@@ -50,7 +50,7 @@ int main(int argc, char** argv)
   MPI_Init(&argc, &argv);
   int verdict = 1;
   {
-    const trocar::base::PetscSession petsc(&argc, &argv);
+    const trocar::base::PetscSession petsc({});
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     const Scratch scratch(rank);

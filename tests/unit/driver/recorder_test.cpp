@@ -53,7 +53,7 @@ void run_two_steps(Recorded& one, Recorder& recorder)
 TEST(Recorder, WritesARowOfEveryHistoryInEveryStep)
 {
   Recorded one("recorder_history");
-  Recorder recorder(one.simulation, {{"trocar", "-check"}, "", ""},
+  Recorder recorder(one.simulation, {{"trocar", "-check"}, "", "", {}, {}},
                     {{"time_step", "0.02", "s", "command line"}});
   run_two_steps(one, recorder);
   base::on_root(one.comm, [&] {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -26,6 +29,15 @@ void with_results(const std::string& folder, const mesh::Mesh& mesh,
     work(results);
     results.close();
   });
+}
+
+std::vector<std::string> files_of(const std::string& folder)
+{
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 std::vector<double> as_numbers(const std::vector<core::Vec3>& points)
@@ -98,6 +110,145 @@ TEST(Results, HistoriesGrowByARowOfEverySeriesWithTheWorkDone)
   });
 }
 
+/// How often a text stands in another.
+int count(const std::string& text, const std::string& piece)
+{
+  int found = 0;
+  for (auto at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++found;
+  return found;
+}
+
+// More rows than there is room for: the file is made anew with all it held.
+TEST(Results, HistoriesOutgrowTheirRoom)
+{
+  const mesh::Mesh mesh = test::block({1, 1, 1});
+  base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
+    std::vector<double> times;
+    {
+      fs::remove_all("results_room");
+      Results results("results_room", mesh, {{{"program", "a test"}}, {}},
+                      {{"time", 0, "s"}, {"tip", 3, "m"}}, 3);
+      results.write_table("/before", {7.0}, "1");
+      core::Ledger ledger;
+      for (int n = 0; n < 50; ++n) {
+        times.push_back(0.25 * n);
+        ledger.solves = n;
+        results.append_history({{times.back()}, {1.0 * n, 0.0, -1.0 * n}}, ledger);
+        if (n != 2 && n != 3 && n != 20) continue;
+        // As a reader finds it in mid-run.
+        const test::H5Reader run("results_room/run.h5");
+        EXPECT_EQ(run.dataset("/history/time").values, times);
+        EXPECT_EQ(run.dataset("/history/tip").values.back(), -1.0 * n);
+        EXPECT_EQ(run.count_attribute("/ledger", "solves"), n);
+      }
+      results.write_table("/after", {8.0}, "1");
+      results.close();
+    }
+    const test::H5Reader run("results_room/run.h5");
+    EXPECT_EQ(run.dataset("/history/time").values, times);
+    EXPECT_EQ(run.dataset("/before").values, std::vector<double>{7.0});
+    EXPECT_EQ(run.dataset("/after").values, std::vector<double>{8.0});
+    EXPECT_EQ(run.words("/provenance/program").front(), "a test");
+    EXPECT_EQ(run.dataset("/mesh/coordinates").values, as_numbers(mesh.x));
+    EXPECT_EQ(run.text_attribute("/", "schema"), "trocar-1");
+    EXPECT_EQ(files_of("results_room"), (std::vector<std::string>{"fields", "run.h5"}));
+  });
+}
+
+TEST(Results, BelongToOneRunAtATime)
+{
+  const mesh::Mesh mesh = test::block({1, 1, 1});
+  base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
+    fs::remove_all("results_lock");
+    {
+      Results first("results_lock", mesh, {}, {{"time", 0, "s"}});
+      first.append_history({{1.0}}, {});
+      first.write_fields(0, 0.0, {}, {}, {});
+      EXPECT_TRUE(first.remark().empty());
+      EXPECT_THROW(Results("results_lock", mesh, {}, {}), core::Failure);
+      EXPECT_EQ(files_of("results_lock"),
+                (std::vector<std::string>{"fields", "run.h5", "run.lock", "run.xdmf"}));
+      EXPECT_EQ(test::H5Reader("results_lock/run.h5").dataset("/history/time").values,
+                std::vector<double>{1.0});
+    }
+    EXPECT_FALSE(fs::exists("results_lock/run.lock"));
+    std::ofstream("results_lock/run.lock") << "host elsewhere\nprocess 7\nsince then\n";
+    EXPECT_THROW(Results("results_lock", mesh, {}, {}), core::Failure);
+    EXPECT_TRUE(fs::exists("results_lock/fields/step_000000.h5"));
+    char name[256] = {};
+    gethostname(name, sizeof name - 1);
+    std::ofstream("results_lock/run.lock") << "host " << name << "\nprocess 7\nsince then\n";
+    Results second("results_lock", mesh, {}, {});
+    EXPECT_NE(second.remark().find("taken over (host"), std::string::npos) << second.remark();
+    EXPECT_FALSE(fs::exists("results_lock/fields/step_000000.h5"));
+  });
+}
+
+// Links are not followed, and what is not ours stays.
+TEST(Results, TouchNothingThatIsNotTheirs)
+{
+  const mesh::Mesh mesh = test::block({1, 1, 1});
+  base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
+    fs::remove_all("results_links");
+    fs::remove_all("results_victim");
+    fs::create_directories("results_victim/fields");
+    fs::create_directories("results_links/fields");
+    std::ofstream("results_victim/a") << "secret";
+    std::ofstream("results_victim/fields/step_000001.h5") << "theirs";
+    const auto expect_refused = [&](const std::string& name) {
+      EXPECT_THROW(Results("results_links", mesh, {}, {}), core::Failure) << name;
+      EXPECT_EQ(test::file_text("results_victim/a"), "secret");
+      EXPECT_EQ(test::file_text("results_victim/fields/step_000001.h5"), "theirs");
+      fs::remove_all("results_links/" + name);
+    };
+    for (const char* name : {"run.h5", "run.xdmf", "run.lock"}) {
+      fs::create_symlink("../results_victim/a", std::string("results_links/") + name);
+      expect_refused(name);
+      std::ofstream(std::string("results_links/") + name) << "a diary";
+      expect_refused(name);
+    }
+    fs::remove_all("results_links/fields");
+    fs::create_symlink("../results_victim/fields", "results_links/fields");
+    expect_refused("fields");
+    fs::create_directory("results_links/fields");
+    for (const char* name : {"step_by_step.txt", "step_1.h5", "step_000001.h5.bak", "mine.h5"})
+      std::ofstream(std::string("results_links/fields/") + name) << "mine";
+    fs::create_symlink("../../results_victim/a", "results_links/fields/step_000002.h5");
+    std::ofstream("results_links/fields/step_000003.h5") << "of an earlier run";
+    std::ofstream("results_links/.trocar-abcdef") << "half of one";
+    Results results("results_links", mesh, {}, {});
+    EXPECT_EQ(files_of("results_links/fields"),
+              (std::vector<std::string>{"mine.h5", "step_000001.h5.bak", "step_000002.h5",
+                                        "step_1.h5", "step_by_step.txt"}));
+    EXPECT_FALSE(fs::exists("results_links/.trocar-abcdef"));
+    results.write_fields(2, 0.0, {}, {}, {});  // replaces the link, not what it points at
+    EXPECT_EQ(test::file_text("results_victim/a"), "secret");
+    EXPECT_THROW(Results("", mesh, {}, {}), core::Failure);
+  });
+}
+
+TEST(Results, ShowFramesAtACostThatGrowsWithThem)
+{
+  const mesh::Mesh mesh = test::block({1, 1, 1});
+  base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
+    fs::remove_all("results_frames");
+    Results results("results_frames", mesh, {}, {});
+    int behind = 0;
+    for (int n = 0; n < 300; ++n) {
+      results.write_fields(n, 1.0 * n, {}, {}, {});
+      const int shown = count(test::file_text("results_frames/run.xdmf"), "<Time ");
+      if (n < 64) {
+        EXPECT_EQ(shown, n + 1);
+      }
+      EXPECT_GE(9 * shown, 8 * (n + 1));
+      behind += shown == n + 1 ? 0 : 1;
+    }
+    EXPECT_GT(behind, 200);
+    results.close();
+    EXPECT_EQ(count(test::file_text("results_frames/run.xdmf"), "<Time "), 300);
+  });
+}
+
 // A field that several ranks own comes out as the mesh has its nodes.
 TEST(Results, FieldsAreInTheOrderOfTheMesh)
 {
@@ -119,21 +270,13 @@ TEST(Results, FieldsAreInTheOrderOfTheMesh)
     EXPECT_EQ(step.dataset("/time").values, (std::vector<double>{0.25}));
     EXPECT_TRUE(step.dataset("/coupling/id").integer);
     EXPECT_EQ(step.count_attribute("/", "lambda_nonunique"), 1);
-    EXPECT_FALSE(fs::exists("results_fields/fields/step_000003.h5.tmp"));
+    EXPECT_EQ(files_of("results_fields/fields"), std::vector<std::string>{"step_000003.h5"});
     const std::string shown = test::file_text("results_fields/run.xdmf");
     EXPECT_NE(shown.find("fields/step_000003.h5:/displacement"), std::string::npos);
     EXPECT_NE(shown.find("fields/step_000003.h5:/von_mises"), std::string::npos);
     EXPECT_EQ(shown.find("/coupling/id"), std::string::npos);  // neither of nodes nor of tets
     EXPECT_NE(shown.find("<Time Value=\"0.25\"/>"), std::string::npos);
   });
-}
-
-/// How often a text stands in another.
-int count(const std::string& text, const std::string& piece)
-{
-  int found = 0;
-  for (auto at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++found;
-  return found;
 }
 
 // A curve is a collection of its own beside the tissue, at the same times.
@@ -199,17 +342,17 @@ TEST(Results, ThatCannotBeWrittenAreRefused)
     std::ofstream("a_file") << "in the way";
     Results("a_file/below", mesh, {}, {});
   });
-  expect_output_failure([] { write_atomically("no_such_folder/text", "words"); });
+  expect_output_failure([] { base::replace_file("no_such_folder/text", "words"); });
 }
 
 TEST(Files, AreReplacedAsAWhole)
 {
   base::on_root(base::Comm(MPI_COMM_WORLD), [] {
     fs::create_directories("atomic");
-    write_atomically("atomic/text", "the first, longer one\n");
-    write_atomically("atomic/text", "the second\n");
+    base::replace_file("atomic/text", "the first, longer one\n");
+    base::replace_file("atomic/text", "the second\n");
     EXPECT_EQ(test::file_text("atomic/text"), "the second\n");
-    EXPECT_FALSE(fs::exists("atomic/text.tmp"));
+    EXPECT_EQ(files_of("atomic"), std::vector<std::string>{"text"});
   });
 }
 
@@ -217,7 +360,7 @@ TEST(Files, AreReplacedAsAWhole)
 TEST(Files, MayLieInTheWorkingFolder)
 {
   base::on_root(base::Comm(MPI_COMM_WORLD), [] {
-    EXPECT_NO_THROW(write_atomically("bare_name", "words"));
+    EXPECT_NO_THROW(base::replace_file("bare_name", "words"));
     EXPECT_EQ(test::file_text("bare_name"), "words");
   });
 }

@@ -12,7 +12,8 @@ namespace {
 // Gmsh reads the edge lengths where they were meant: at the corners of every tet.
 TEST(SizeField, IsWhatGmshReads)
 {
-  const mesh::Mesh mesh = test::block({2, 1, 1, core::Vec3(0.2, 0.1, 0.1), 0.0});
+  mesh::Mesh mesh = test::block({2, 1, 1, core::Vec3(0.2, 0.1, 0.1), 0.0});
+  mesh.unit = 1e-3;  // a file in millimetres
   const core::VecX sizes = core::VecX::LinSpaced(mesh.node_count(), 0.01, 0.02);
   base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
     std::filesystem::create_directories("sizes");
@@ -35,8 +36,8 @@ TEST(SizeField, IsWhatGmshReads)
         const double* tet = &data.front()[16 * t];  // x of four corners, y, z, values
         const int node = mesh.tets[t][a];
         const core::Vec3& x = mesh.x[static_cast<std::size_t>(node)];
-        EXPECT_LT((core::Vec3(tet[a], tet[4 + a], tet[8 + a]) - x).norm(), 1e-9);
-        EXPECT_NEAR(tet[12 + a], sizes[node], 1e-10);
+        EXPECT_LT((1e-3 * core::Vec3(tet[a], tet[4 + a], tet[8 + a]) - x).norm(), 1e-9);
+        EXPECT_NEAR(1e-3 * tet[12 + a], sizes[node], 1e-10);
       }
   });
 }

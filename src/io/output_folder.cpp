@@ -1,0 +1,189 @@
+#include "io/output_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+#include "core/failure.hpp"
+
+namespace trocar::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string host()
+{
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string utc_now()
+{
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::ostringstream text;
+  text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
+  return text.str();
+}
+
+/// What is at a path itself, not behind a link there.
+fs::file_type type_of(const std::string& path)
+{
+  std::error_code ignored;
+  return fs::symlink_status(path, ignored).type();
+}
+
+/// step_NNNNNN.h5, with six digits or more.
+bool names_step(const std::string& name)
+{
+  const std::string begin = "step_", end = ".h5";
+  if (name.size() < begin.size() + 6 + end.size() || name.rfind(begin, 0) != 0) return false;
+  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return false;
+  const std::string digits = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return digits.find_first_not_of("0123456789") == std::string::npos;
+}
+
+bool names_temporary(const std::string& name)
+{
+  return name.rfind(base::temporary_prefix, 0) == 0 &&
+         name.size() == std::strlen(base::temporary_prefix) + 6;
+}
+
+/// Removes regular files of a folder whose names say they are ours.
+template <class Ours>
+void remove_ours(const std::string& folder, const Ours& ours)
+{
+  std::error_code trouble;
+  for (const auto& entry : fs::directory_iterator(folder, trouble))
+    if (ours(entry.path().filename().string()) &&
+        fs::symlink_status(entry.path()).type() == fs::file_type::regular)
+      fs::remove(entry.path(), trouble);
+  if (trouble) throw core::output_error("cannot clear " + folder + ": " + trouble.message());
+}
+
+struct stat status_of(const base::Descriptor& file)
+{
+  struct stat status
+  {
+  };
+  if (::fstat(file.number(), &status) != 0)
+    throw core::output_error(std::string("cannot lock the output folder: ") + std::strerror(errno));
+  return status;
+}
+
+base::Descriptor opened(const std::string& lock)
+{
+  return {lock, O_RDWR | O_CREAT};
+}
+
+/// The file is still the one of that name.
+bool is_at(const base::Descriptor& file, const std::string& path)
+{
+  struct stat there
+  {
+  };
+  const struct stat here = status_of(file);
+  return ::lstat(path.c_str(), &there) == 0 && there.st_ino == here.st_ino &&
+         there.st_dev == here.st_dev;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::string& path) : path_(path)
+{
+  if (path.empty()) throw core::option_error("option -output_dir: the name of a folder is missing");
+  std::error_code trouble;
+  fs::create_directories(path_, trouble);
+  if (trouble || !fs::is_directory(path_))
+    throw core::output_error("cannot make folder " + path_ +
+                             (trouble ? ": " + trouble.message() : ": a file has that name"));
+  lock();
+  refuse_strangers();
+  if (type_of(path_ + "/fields") == fs::file_type::not_found) {
+    fs::create_directory(path_ + "/fields", trouble);
+    if (trouble) throw core::output_error("cannot make " + path_ + "/fields: " + trouble.message());
+  }
+}
+
+OutputFolder::Lock::~Lock()
+{
+  if (file.number() >= 0) ::unlink(path.c_str());
+}
+
+/// The kernel's lock on the file ends with the process that has it; what the file says is for
+/// people, and tells a run on another host, whose locks may not be seen here.
+void OutputFolder::lock()
+{
+  const std::string file = path_ + "/run.lock";
+  if (type_of(file) != fs::file_type::not_found && type_of(file) != fs::file_type::regular)
+    throw core::output_error(file + " is no file of ours");
+  base::Descriptor mine = opened(file);
+  bool have = ::flock(mine.number(), LOCK_EX | LOCK_NB) == 0;
+  while (have && !is_at(mine, file)) {  // its last owner removed it in between
+    mine = opened(file);
+    have = ::flock(mine.number(), LOCK_EX | LOCK_NB) == 0;
+  }
+  constexpr off_t longest = 1000;
+  const std::string said =
+      mine.read_at(0, static_cast<std::size_t>(std::min(status_of(mine).st_size, longest)));
+  const bool elsewhere = !said.empty() && said.rfind("host " + host() + "\n", 0) != 0;
+  std::string words = said;
+  for (char& c : words)
+    if (c == '\n') c = ' ';
+  if (!have || elsewhere)
+    throw core::output_error("folder " + path_ + " belongs to a run (" + words +
+                             (elsewhere ? "); if that is over, remove " + file : ")"));
+  if (!said.empty()) remark_ = "the lock of a run that died was taken over (" + words + ")";
+  const std::string text =
+      "host " + host() + "\nprocess " + std::to_string(::getpid()) + "\nsince " + utc_now() + "\n";
+  if (::ftruncate(mine.number(), 0) != 0)
+    throw core::output_error("cannot lock " + file + ": " + std::strerror(errno));
+  mine.write_at(0, text);
+  lock_.path = file;
+  lock_.file = std::move(mine);
+}
+
+/// Names that the results will have must be free, or those of results.
+void OutputFolder::refuse_strangers() const
+{
+  const auto must_be = [&](const std::string& name, fs::file_type type) {
+    const fs::file_type found = type_of(path_ + "/" + name);
+    if (found != type && found != fs::file_type::not_found)
+      throw core::output_error(path_ + "/" + name + " is a link or no result of this program: " +
+                               "choose another -output_dir");
+  };
+  must_be("fields", fs::file_type::directory);
+  must_be("run.h5", fs::file_type::regular);
+  must_be("run.xdmf", fs::file_type::regular);
+  const auto begins = [&](const std::string& name, const std::string& bytes) {
+    if (type_of(path_ + "/" + name) == fs::file_type::not_found) return;
+    std::ifstream stream(path_ + "/" + name, std::ios::binary);
+    std::string found(bytes.size(), '\0');
+    stream.read(found.data(), static_cast<std::streamsize>(found.size()));
+    if (found != bytes)
+      throw core::output_error(path_ + "/" + name +
+                               " is no result of this program: choose another -output_dir");
+  };
+  begins("run.h5", "\x89HDF\r\n\x1a\n");
+  begins("run.xdmf", "<?xml");
+}
+
+void OutputFolder::clear() const
+{
+  remove_ours(path_, names_temporary);
+  remove_ours(path_ + "/fields",
+              [](const std::string& name) { return names_step(name) || names_temporary(name); });
+}
+
+}  // namespace trocar::io
