@@ -23,7 +23,7 @@ def run(options_file, folder, changes, ranks=1):
     words = []
     for name, value in changes.items():
         words += [f"-{name}", str(value)]
-    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    launcher = ["mpirun", "-q", "-n", str(ranks)] if ranks > 1 else []
     subprocess.run(
         [*launcher, "build/trocar", "-options_file", f"options/{options_file}",
          "-output_dir", str(folder), "-quiet", *words], cwd=ROOT, check=True)

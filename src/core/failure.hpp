@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/words.hpp"
+
 namespace trocar::core {
 
 /// What the process returns to the shell; the numbers follow sysexits.h where it has one.
@@ -16,15 +18,20 @@ enum class ExitCode : int {
   checkpoint = 75
 };
 
-/// A reason to stop, in one line for the user. Thrown on every rank or, from one rank only,
+/// A reason to stop, in one line for the user: what names and values of others bring into it is
+/// escaped, and cut where it is long. Thrown on every rank or, from one rank only,
 /// turned into an agreed stop by `base::on_root` or into MPI_Abort by `main`.
 class Failure : public std::runtime_error
 {
  public:
-  Failure(ExitCode code, const std::string& line) : std::runtime_error(line), code_(code) {}
+  Failure(ExitCode code, const std::string& line)
+      : std::runtime_error(printable(line, longest)), code_(code)
+  {
+  }
   ExitCode code() const noexcept { return code_; }
 
  private:
+  static constexpr std::size_t longest = 700;  ///< characters
   ExitCode code_;
 };
 

@@ -103,6 +103,8 @@ std::string objection(const std::string& name, const std::string& value)
     if (lower.find("ooc") != std::string::npos || lower == "tissue_mat_mumps_icntl_22")
       return "the solver would write files of its own";
   }
+  // Debian 12's corrupts memory when its factor is made anew or given back.
+  if (value == "superlu_dist") return "SuperLU_DIST would end the run by a crash: take mumps";
   if (shows_something(name) && !among({"", "ascii", "true", "false", "0", "1"}, value))
     return "what is shown goes to the terminal: without a value, or with ascii";
   return "";

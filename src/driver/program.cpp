@@ -138,8 +138,7 @@ bool all_ranks_failed(MPI_Comm comm)
 int fail(const base::Comm& comm, MPI_Comm alarm, int code, const char* line)
 {
   const bool agreed = all_ranks_failed(alarm);
-  if (!agreed || comm.root())
-    std::fprintf(stderr, "trocar: error: %s\n", core::printable(line, 700).c_str());
+  if (!agreed || comm.root()) std::fprintf(stderr, "trocar: error: %s\n", line);
   if (!agreed) MPI_Abort(comm.get(), code);
   return code;
 }

@@ -66,26 +66,32 @@ bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, 
   return true;
 }
 
-/// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal.
+/// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal. A
+/// cautious walk frees one: that with the longest way to go or, where round-off leaves no row a
+/// positive pivot, the steepest.
 bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Walk& walk)
 {
   const VecX gradient = S * walk.x + s;
   std::vector<int> wrong;
-  int worst = -1;
-  double largest = 0.0;
+  int farthest = -1, steepest = -1;
+  double way = 0.0, slope = 0.0;
   for (int i = 0; i < static_cast<int>(s.size()); ++i) {
     if (walk.free[static_cast<std::size_t>(i)]) continue;
     const double inward = walk.x[i] >= F[i] ? gradient[i] : -gradient[i];
     if (inward <= tolerance) continue;
     wrong.push_back(i);
-    if (inward / S(i, i) > largest) {
-      largest = inward / S(i, i);
-      worst = i;
+    if (S(i, i) > 0.0 && inward / S(i, i) > way) {
+      way = inward / S(i, i);
+      farthest = i;
+    }
+    if (steepest < 0 || inward > slope) {
+      slope = inward;
+      steepest = i;
     }
   }
   if (wrong.empty()) return false;
   if (walk.cautious)
-    walk.free[static_cast<std::size_t>(worst)] = true;
+    walk.free[static_cast<std::size_t>(farthest >= 0 ? farthest : steepest)] = true;
   else
     for (int i : wrong) walk.free[static_cast<std::size_t>(i)] = true;
   return true;

@@ -151,33 +151,57 @@ void LinearSystem::set_operator(const fem::BlockMatrix& values)
   TROCAR_PETSC(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
   TROCAR_PETSC(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   if (needs_aij_) {
-    Mat copy = converted_.get();
-    if (copy) {
-      TROCAR_PETSC(MatConvert(A, MATAIJ, MAT_REUSE_MATRIX, &copy));
-    } else {
-      TROCAR_PETSC(MatConvert(A, MATAIJ, MAT_INITIAL_MATRIX, converted_.out()));
-      TROCAR_PETSC(MatSetOption(converted_.get(), MAT_SPD, PETSC_TRUE));
-    }
+    convert();
     A = converted_.get();
   }
   attach_near_null_space(A);
   TROCAR_PETSC(KSPSetOperators(ksp_.get(), A, A));
   PC pc = nullptr;
   TROCAR_PETSC(KSPGetPC(ksp_.get(), &pc));
-  if (version_ == 0) raise_mumps_workspace(pc);
-  TROCAR_PETSC(KSPSetUp(ksp_.get()));
+  if (fresh_) raise_mumps_workspace(pc);
+  fresh_ = false;
+  set_up();
   ++version_;
   ++ledger_->factorisations;
   PCFailedReason failed = PC_NOERROR;
   TROCAR_PETSC(PCGetFailedReason(pc, &failed));
-  if (space_->comm().any(failed == PC_FACTOR_OUTMEMORY || failed == PC_FACTOR_OTHER))
-    throw core::solver_error("no factor of the tissue operator by " + describe() +
+  const bool out = space_->comm().any(failed == PC_FACTOR_OUTMEMORY || failed == PC_FACTOR_OTHER);
+  if (space_->comm().all(failed == PC_NOERROR)) return;
+  // What is left of the factor must not serve again: MUMPS would refuse it, others would not.
+  const std::string solver = describe();
+  TROCAR_PETSC(KSPReset(ksp_.get()));
+  fresh_ = true;
+  if (out)
+    throw core::solver_error("no factor of the tissue operator by " + solver +
                              ", most likely for want of memory: take an iterative solver " +
                              "(-tissue_ksp_type cg -tissue_pc_type gamg)");
-  if (!space_->comm().all(failed == PC_NOERROR))
-    throw core::solver_error(
-        "the tissue operator could not be factored: it is singular or not "
-        "positive definite (are the supports sufficient?)");
+  throw core::solver_error(
+      "the tissue operator could not be factored: it is singular or not "
+      "positive definite (are the supports sufficient?)");
+}
+
+/// PETSc's own conversion into a matrix that is there already writes past it on one rank.
+void LinearSystem::convert()
+{
+  if (!converted_) {
+    TROCAR_PETSC(MatConvert(assembled_.get(), MATAIJ, MAT_INITIAL_MATRIX, converted_.out()));
+    TROCAR_PETSC(MatSetOption(converted_.get(), MAT_SPD, PETSC_TRUE));
+    return;
+  }
+  base::MatHandle fresh;
+  TROCAR_PETSC(MatConvert(assembled_.get(), MATAIJ, MAT_INITIAL_MATRIX, fresh.out()));
+  TROCAR_PETSC(MatCopy(fresh.get(), converted_.get(), SAME_NONZERO_PATTERN));
+}
+
+/// Factors, or sets up the preconditioner.
+void LinearSystem::set_up()
+{
+  const PetscErrorCode code = KSPSetUp(ksp_.get());
+  if (code == PETSC_ERR_MISSING_FACTOR || code == PETSC_ERR_SUP)
+    throw core::option_error("option -" + settings_.prefix + "pc_type: PETSc has no " + describe() +
+                             " on " + std::to_string(space_->comm().size()) +
+                             " ranks (bjacobi and asm take one for each rank)");
+  TROCAR_PETSC(code);
 }
 
 void LinearSystem::check_converged(const char* what) const

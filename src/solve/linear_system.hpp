@@ -53,6 +53,8 @@ class LinearSystem
   void create_solver();
   void attach_near_null_space(Mat matrix);
   void raise_mumps_workspace(PC pc);
+  void convert();
+  void set_up();
   void check_converged(const char* what) const;
 
   const fem::Space* space_;
@@ -64,6 +66,7 @@ class LinearSystem
   base::NullSpaceHandle rigid_modes_;
   std::vector<core::Vec3> x_owned_;
   bool needs_aij_ = false;
+  bool fresh_ = true;  ///< nothing is factored, or what was has failed
   int version_ = 0;
 };
 

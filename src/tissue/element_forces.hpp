@@ -155,10 +155,8 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
     if (!averaged()) viscous += m.lambda() * by.cwiseProduct(D).sum() * by;
     damping += beta * shapes_[point].volume * viscous * shapes_[point].gradient;
   }
-  if (beta > 0.0) {
-    force += damping;
-    if (sums.damping.value.size() > 0) scatter(damping, e, sums.damping);
-  }
+  force += damping;
+  if (beta > 0.0 && sums.damping.value.size() > 0) scatter(damping, e, sums.damping);
   scatter(force, e, sums.internal);
   Nodal inertia = Nodal::Zero();
   if (motion.a.value.size() > 0) {

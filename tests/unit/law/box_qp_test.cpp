@@ -57,5 +57,19 @@ TEST(BoxQp, SetNewtonGivesUpInsteadOfCycling)
   }
 }
 
+// Redundant rows whose pivots round-off makes negative or nothing: there is none to prefer, and
+// none but these may be written to.
+TEST(BoxQp, RowsWithoutAPositivePivotAreReleasedAllTheSame)
+{
+  for (double pivot : {-1e-12, 0.0}) {
+    MatX S = MatX::Constant(2, 2, pivot);
+    const VecX s = VecX::Constant(2, 1.0), F = VecX::Constant(2, 1.0), start = F;
+    const BoxSolution one = active_set(S, s, F, start, 100);
+    const auto energy = [&](const VecX& x) { return x.dot(0.5 * (S * x) + s); };
+    EXPECT_LE(one.x.cwiseAbs().maxCoeff(), 1.0);
+    EXPECT_LE(energy(one.x), energy(start));
+  }
+}
+
 }  // namespace
 }  // namespace trocar::law
