@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <climits>
 #include <exception>
+#include <filesystem>
+#include <new>
 
 #include "base/petsc.hpp"
 
@@ -23,8 +25,12 @@ Caught run_guarded(const std::function<void()>& work)
     return {};
   } catch (const core::Failure& failure) {
     return {static_cast<int>(failure.code()), failure.what()};
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {static_cast<int>(core::ExitCode::output), core::printable(error.what())};
+  } catch (const std::bad_alloc&) {
+    return {static_cast<int>(core::ExitCode::solver), "the memory does not suffice"};
   } catch (const std::exception& error) {
-    return {static_cast<int>(core::ExitCode::internal), error.what()};
+    return {static_cast<int>(core::ExitCode::internal), core::printable(error.what())};
   }
 }
 

@@ -73,6 +73,15 @@ std::string Descriptor::read_at(std::uint64_t offset, std::size_t bytes) const
   return text;
 }
 
+std::uint64_t Descriptor::size() const
+{
+  struct stat status
+  {
+  };
+  if (::fstat(number_, &status) != 0) throw failure("look at", path_);
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
 void Descriptor::sync() const
 {
   if (::fsync(number_) != 0) throw failure("sync", path_);

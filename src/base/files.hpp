@@ -27,6 +27,7 @@ class Descriptor
   int number() const noexcept { return number_; }
   void write_at(std::uint64_t offset, std::string_view bytes) const;
   std::string read_at(std::uint64_t offset, std::size_t bytes) const;
+  std::uint64_t size() const;
   void sync() const;
   void close();
 

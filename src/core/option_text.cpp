@@ -88,7 +88,7 @@ std::string value_of(const WrittenOption& option, bool spaces)
   std::string value;
   for (std::size_t i = 0; i < option.words.size(); ++i) {
     const std::string& word = option.words[i];
-    const bool joined = i == 0 || value.back() == ',' || word.front() == ',';
+    const bool joined = value.empty() || value.back() == ',' || word.front() == ',';
     if (!joined && !spaces)
       throw option_error(label_of(option) + ": '" + printable(word, 60) + "' behind '" +
                          printable(value, 60) + "' belongs to nothing");

@@ -160,6 +160,16 @@ std::vector<std::string> Options::names(const std::string& name, const std::stri
   return words;
 }
 
+std::vector<std::string> Options::new_names(const std::string& name)
+{
+  std::vector<std::string> words = names(name);
+  for (const std::string& word : words)
+    if (!is_plain_name(word.substr(0, word.find(':'))))
+      throw option_error("option -" + label(name, "") + ": '" + word +
+                         "' cannot be a name: it has characters that paths or XML take otherwise");
+  return words;
+}
+
 Vec3 Options::vector(const std::string& name, const std::string& group)
 {
   const Vec3 value = vector_or_free(name, group);

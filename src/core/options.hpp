@@ -59,6 +59,9 @@ class Options
   bool flag(const std::string& name, const std::string& group = "");
   std::string text(const std::string& name, const std::string& group = "");
   std::vector<std::string> names(const std::string& name, const std::string& group = "");
+  /// Names that the user gives to things, which must be plain (see `is_plain_name`); what follows a
+  /// colon is not part of them.
+  std::vector<std::string> new_names(const std::string& name);
   Vec3 vector(const std::string& name, const std::string& group = "");
   /// Three words of which `free` stands for an axis without a value: NaN there.
   Vec3 vector_or_free(const std::string& name, const std::string& group);

@@ -76,6 +76,13 @@ std::string printable(std::string_view text, std::size_t most)
   return all;
 }
 
+bool is_plain_name(std::string_view name)
+{
+  return !name.empty() && name != "." && name != ".." &&
+         name.find_first_of("/<>&\"'\\") == std::string_view::npos &&
+         printable(name, name.size()) == name;
+}
+
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates)
 {
   std::string best;

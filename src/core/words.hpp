@@ -16,6 +16,10 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// UTF-8 as well, and cut in its middle where it has more than `most` characters.
 std::string printable(std::string_view text, std::size_t most = 200);
 
+/// Whether a thing may be called that: its name stands in paths and in XML. No control characters,
+/// none of / < > & and quotes, neither "." nor "..".
+bool is_plain_name(std::string_view name);
+
 /// A number with six significant digits: 1.5e-09, 0.08.
 std::string shown(double value);
 

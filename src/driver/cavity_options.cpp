@@ -168,7 +168,7 @@ void read_pv_curve(Options& options, Scenario& scenario)
 
 mesh::Mesh with_cavities_hollow(Options& options, mesh::Mesh mesh)
 {
-  for (const std::string& name : options.names("cavities")) {
+  for (const std::string& name : options.new_names("cavities")) {
     wall_of(options, name);
     const std::string region = options.text("cavity_<cavity>_region", name);
     if (!region.empty()) mesh = mesh::hollow(mesh, region);
@@ -179,7 +179,7 @@ mesh::Mesh with_cavities_hollow(Options& options, mesh::Mesh mesh)
 void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
 {
   std::vector<cavity::CavitySettings>& cavities = scenario.cavities.cavities;
-  for (const std::string& name : options.names("cavities")) {
+  for (const std::string& name : options.new_names("cavities")) {
     if (name == "outside")
       throw core::option_error("option -cavities: 'outside' is the world's name");
     cavity::CavitySettings one;

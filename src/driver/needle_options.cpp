@@ -159,7 +159,7 @@ std::vector<needle::NeedleSettings> read_needles(core::Options& options, const m
                                                  const mesh::Locator& locator, double end,
                                                  const base::Comm& comm)
 {
-  const std::vector<std::string> names = options.names("needles");
+  const std::vector<std::string> names = options.new_names("needles");
   std::vector<needle::NeedleSettings> needles;
   check_needle_names(names);
   for (const std::string& name : names) {

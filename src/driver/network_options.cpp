@@ -109,7 +109,7 @@ cavity::EdgeSettings read_edge(Options& options, const std::string& entry, const
 
 void read_network(Options& options, Scenario& scenario, const base::Comm& comm)
 {
-  for (const std::string& entry : options.names("edges"))
+  for (const std::string& entry : options.new_names("edges"))
     scenario.cavities.edges.push_back(read_edge(options, entry, scenario, comm));
 }
 

@@ -92,10 +92,14 @@ class Collector
     if (name.empty()) throw core::option_error(core::label_of(one) + ": a file name must follow");
     const std::string file = found(name, beside);
     const std::string text = text_of(file, core::label_of(one) + ": ", core::ExitCode::options);
-    const fs::path path = fs::canonical(file);
+    std::error_code ignored;
+    const fs::path path = fs::canonical(file, ignored);
     if (std::find(open_.begin(), open_.end(), path) != open_.end())
       throw core::option_error(core::label_of(one) + ": '" + core::printable(file) +
                                "' includes itself");
+    constexpr int most_files = 100;
+    if (++files_ > most_files)
+      throw core::option_error(core::label_of(one) + ": more than 100 options files");
     open_.push_back(path);
     invocation_.options_file += (invocation_.options_file.empty() ? "" : ",") + file;
     invocation_.options_file_text += text;
@@ -108,6 +112,7 @@ class Collector
   Invocation& invocation_;
   std::vector<WrittenOption> petsc_;
   std::vector<fs::path> open_;  ///< files that are being read
+  int files_ = 0;               ///< that were
 };
 
 void collect(Invocation& invocation)

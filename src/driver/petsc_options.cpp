@@ -102,6 +102,11 @@ std::string objection(const std::string& name, const std::string& value)
     if (lower.find("python") != std::string::npos) return "code of others is not run";
     if (lower.find("ooc") != std::string::npos || lower == "tissue_mat_mumps_icntl_22")
       return "the solver would write files of its own";
+    // Units of Fortran that MUMPS writes to.
+    if (among({"tissue_mat_mumps_icntl_1", "tissue_mat_mumps_icntl_2", "tissue_mat_mumps_icntl_3"},
+              lower) &&
+        value != "0" && value != "6")
+      return "MUMPS would write files of its own: 6 is the terminal, 0 nothing";
   }
   // Debian 12's corrupts memory when its factor is made anew or given back.
   if (value == "superlu_dist") return "SuperLU_DIST would end the run by a crash: take mumps";

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 #include <thread>
 
@@ -137,6 +138,7 @@ bool all_ranks_failed(MPI_Comm comm)
 
 int fail(const base::Comm& comm, MPI_Comm alarm, int code, const char* line)
 {
+  handle_signals(false);  // a launcher that ends the others need not be told of
   const bool agreed = all_ranks_failed(alarm);
   if (!agreed || comm.root()) std::fprintf(stderr, "trocar: error: %s\n", line);
   if (!agreed) MPI_Abort(comm.get(), code);
@@ -174,6 +176,9 @@ int run_program(int argc, char** argv, MPI_Comm world)
     return 0;
   } catch (const core::Failure& failure) {
     return fail(comm, alarm, static_cast<int>(failure.code()), failure.what());
+  } catch (const std::bad_alloc&) {
+    return fail(comm, alarm, static_cast<int>(core::ExitCode::solver),
+                "the memory does not suffice");
   } catch (const std::exception& error) {
     return fail(comm, alarm, static_cast<int>(core::ExitCode::internal), error.what());
   }

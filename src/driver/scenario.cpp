@@ -216,7 +216,7 @@ OutputSettings read_output(Options& options)
 void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
 {
   const int layers = options.integer("compliance_tube");
-  if (options.names("needles").empty()) return;
+  if (options.new_names("needles").empty()) return;
   const mesh::Locator locator(scenario.mesh);
   scenario.needles = read_needles(options, scenario.mesh, locator, scenario.time.end, comm);
   const solve::Provider provider = scenario.tissue.provider;

@@ -31,8 +31,9 @@ void handle_signals(bool speaks)
 {
   this_rank_speaks = speaks ? 1 : 0;
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no more fails the write: 74
-  for (int signal : {SIGHUP, SIGINT, SIGTERM}) std::signal(signal, end_with);
+  std::signal(SIGXFSZ, SIG_IGN);                // a file that may grow no more fails the write: 74
+  for (int signal : {SIGHUP, SIGINT, SIGTERM})  // what nohup has ignored stays so
+    if (std::signal(signal, end_with) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace trocar::driver

@@ -65,10 +65,10 @@ template <class Ours>
 void remove_ours(const std::string& folder, const Ours& ours)
 {
   std::error_code trouble;
-  for (const auto& entry : fs::directory_iterator(folder, trouble))
-    if (ours(entry.path().filename().string()) &&
-        fs::symlink_status(entry.path()).type() == fs::file_type::regular)
-      fs::remove(entry.path(), trouble);
+  for (fs::directory_iterator at(folder, trouble), end; !trouble && at != end;
+       at.increment(trouble))
+    if (ours(at->path().filename().string()) && type_of(at->path()) == fs::file_type::regular)
+      fs::remove(at->path(), trouble);
   if (trouble) throw core::output_error("cannot clear " + folder + ": " + trouble.message());
 }
 
@@ -118,7 +118,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path)
 
 OutputFolder::Lock::~Lock()
 {
-  if (file.number() >= 0) ::unlink(path.c_str());
+  if (file.number() >= 0 && is_at(file, path)) ::unlink(path.c_str());
 }
 
 /// The kernel's lock on the file ends with the process that has it; what the file says is for
@@ -134,9 +134,9 @@ void OutputFolder::lock()
     mine = opened(file);
     have = ::flock(mine.number(), LOCK_EX | LOCK_NB) == 0;
   }
-  constexpr off_t longest = 1000;
+  constexpr std::uint64_t longest = 1000;
   const std::string said =
-      mine.read_at(0, static_cast<std::size_t>(std::min(status_of(mine).st_size, longest)));
+      mine.read_at(0, static_cast<std::size_t>(std::min(mine.size(), longest)));
   const bool elsewhere = !said.empty() && said.rfind("host " + host() + "\n", 0) != 0;
   std::string words = said;
   for (char& c : words)
@@ -181,7 +181,9 @@ void OutputFolder::refuse_strangers() const
 
 void OutputFolder::clear() const
 {
-  remove_ours(path_, names_temporary);
+  remove_ours(path_, [](const std::string& name) {
+    return names_temporary(name) || name == "run.xdmf";  // it shows files that go now
+  });
   remove_ours(path_ + "/fields",
               [](const std::string& name) { return names_step(name) || names_temporary(name); });
 }

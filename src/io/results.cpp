@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 
 #include "core/failure.hpp"
 #include "mesh/quadratic.hpp"
@@ -102,9 +101,7 @@ void Results::write_mesh(base::H5File& file, const mesh::Mesh& mesh) const
 void Results::make_room()
 {
   const std::size_t old_room = room_;
-  const std::uint64_t size = std::filesystem::file_size(run_file());
-  const base::H5File old =
-      base::H5File::of_bytes(run_file(), run_.read_at(0, static_cast<std::size_t>(size)));
+  const base::H5File old = base::H5File::of_bytes(run_file(), run_.read_at(0, run_.size()));
   const std::vector<base::SeriesPlace> old_places = places_;
   room_ = 2 * old_room;
   base::H5File file = base::H5File::create(run_file());
@@ -166,7 +163,7 @@ void Results::write_fields(int step, double time, const std::vector<Field>& fiel
   base::replace_file(path, file.bytes());
   frames_.push_back(std::move(frame));
   // Written anew each time run.xdmf would cost the square of the steps: from some on it lags behind
-  // by a part of them until the run ends, however it does.
+  // by a part of them until the run ends; of one that is killed the last may be missing there.
   constexpr std::size_t at_once = 64, part = 8;
   if (frames_.size() <= at_once || frames_.size() >= shown_ + shown_ / part) write_frames();
 }
@@ -181,9 +178,7 @@ void Results::write_frames()
 void Results::write_table(const std::string& path, const std::vector<double>& values,
                           const std::string& units)
 {
-  const std::uint64_t size = std::filesystem::file_size(run_file());
-  base::H5File file =
-      base::H5File::of_bytes(run_file(), run_.read_at(0, static_cast<std::size_t>(size)));
+  base::H5File file = base::H5File::of_bytes(run_file(), run_.read_at(0, run_.size()));
   file.write(path, values, 0, units);
   place(file);
 }

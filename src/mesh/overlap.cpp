@@ -2,7 +2,6 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "mesh/quadratic.hpp"
@@ -16,6 +15,10 @@ using Point = bg::model::point<double, 3, bg::cs::cartesian>;
 using Box = bg::model::box<Point>;
 using Entry = std::pair<Box, int>;
 using Corners = std::array<Vec3, 4>;
+
+/// Pairs that are looked at: a mesh needs some tens for each tet at its boundary; in a heap of tets
+/// at one place they would be the square of these.
+constexpr long long most_per_tet = 200, least_pairs = 1'000'000;
 
 constexpr double touching = 1e-9;  ///< of the longest edge: what rounding makes of coordinates
 
@@ -102,13 +105,16 @@ Overlap find_overlap(const Mesh& mesh, const std::vector<int>& boundary,
     return part[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][0])];
   };
   Overlap found;
-  std::vector<Entry> near;
+  const long long most_pairs = least_pairs + most_per_tet * static_cast<long long>(entries.size());
+  long long looked_at = 0;
   for (const auto& [box, tet] : entries) {
-    near.clear();
-    tree.query(bg::index::intersects(box), std::back_inserter(near));
     const Corners x = corners(mesh, tet);
-    for (const Entry& entry : near) {
-      const int other = entry.second;
+    for (auto at = tree.qbegin(bg::index::intersects(box)); at != tree.qend(); ++at) {
+      const int other = at->second;
+      if (++looked_at > most_pairs) {
+        found.whole = false;
+        return found;
+      }
       if (other <= tet) continue;
       const double depth = overlap_depth(x, corners(mesh, other));
       if (depth <= sagitta(mesh, tet) + sagitta(mesh, other)) continue;

@@ -218,6 +218,9 @@ void judge_overlap(Mesh& mesh, const std::vector<TetFace>& boundary)
   if (overlap.tets[0] >= 0)
     throw core::data_error(mesh.file + ": tetrahedra " + tag_of(mesh, overlap.tets[0]) + " and " +
                            tag_of(mesh, overlap.tets[1]) + " of one connected part overlap");
+  if (!overlap.whole)
+    mesh.remarks.push_back(
+        "so many tetrahedra share one place that not all pairs were looked at for overlap");
   if (overlap.between_parts > 0)
     mesh.remarks.push_back(
         "separate parts overlap: " + counted(overlap.between_parts, "pair", "pairs") +
@@ -232,31 +235,27 @@ void judge_overlap(Mesh& mesh, const std::vector<TetFace>& boundary)
 
 void drop_repeated(Mesh& mesh)
 {
-  const auto corners = [&](int t) {
-    Tet tet = mesh.tets[static_cast<std::size_t>(t)];
-    std::sort(tet.begin(), tet.end());
-    return tet;
-  };
-  std::vector<std::vector<int>> of_least;  // tets by their least corner
-  of_least.resize(mesh.x.size());
-  for (int t = 0; t < mesh.tet_count(); ++t)
-    of_least[static_cast<std::size_t>(corners(t)[0])].push_back(t);
+  std::vector<std::pair<Tet, int>> by_corners;
+  by_corners.reserve(mesh.tets.size());
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    by_corners.emplace_back(mesh.tets[static_cast<std::size_t>(t)], t);
+    std::sort(by_corners.back().first.begin(), by_corners.back().first.end());
+  }
+  std::sort(by_corners.begin(), by_corners.end());
   std::vector<bool> again(mesh.tets.size(), false);
   long long count = 0;
-  for (const std::vector<int>& tets : of_least)
-    for (std::size_t i = 0; i < tets.size(); ++i)
-      for (std::size_t j = 0; j < i && !again[static_cast<std::size_t>(tets[i])]; ++j) {
-        const int a = tets[j], b = tets[i];
-        if (corners(a) != corners(b)) continue;
-        const std::size_t in_a = static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(a)]),
-                          in_b = static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(b)]);
-        if (in_a != in_b)
-          throw core::data_error(mesh.file + ": tetrahedra " + tag_of(mesh, a) + " and " +
-                                 tag_of(mesh, b) + " are the same one in two physical volumes, '" +
-                                 mesh.volumes[in_a] + "' and '" + mesh.volumes[in_b] + "'");
-        again[static_cast<std::size_t>(b)] = true;
-        ++count;
-      }
+  for (std::size_t i = 1; i < by_corners.size(); ++i) {
+    if (by_corners[i].first != by_corners[i - 1].first) continue;
+    const int a = by_corners[i - 1].second, b = by_corners[i].second;
+    const std::size_t in_a = static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(a)]),
+                      in_b = static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(b)]);
+    if (in_a != in_b)
+      throw core::data_error(mesh.file + ": tetrahedra " + tag_of(mesh, a) + " and " +
+                             tag_of(mesh, b) + " are the same one in two physical volumes, '" +
+                             mesh.volumes[in_a] + "' and '" + mesh.volumes[in_b] + "'");
+    again[static_cast<std::size_t>(b)] = true;
+    ++count;
+  }
   if (count == 0) return;
   const auto keep = [&](auto& list) {
     std::size_t kept = 0;

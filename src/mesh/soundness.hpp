@@ -21,6 +21,7 @@ struct Overlap
   std::array<int, 2> tets{-1, -1};  ///< of one connected part
   long long between_parts = 0;      ///< pairs of tets of different parts
   double depth = 0.0;               ///< the deepest of these [m]
+  bool whole = true;                ///< false: too many tets at one place to look at all pairs
 };
 /// `boundary`: tets with a face there; `part`: of the nodes.
 Overlap find_overlap(const Mesh& mesh, const std::vector<int>& boundary,

@@ -43,7 +43,13 @@ LinearSystem::LinearSystem(const fem::Space& space, const fem::BlockPattern& pat
   for (int local = 0; local < space.owned(); ++local)
     x_owned_.push_back(x[static_cast<std::size_t>(space.file_node(local))]);
   create_matrix(pattern);
-  create_solver();
+  try {
+    create_solver();
+  } catch (const core::Unsolved&) {
+    throw;
+  } catch (const core::Failure& failure) {  // PETSc does not know a value
+    throw core::option_error("option -" + settings_.prefix + "…: " + failure.what());
+  }
 }
 
 void LinearSystem::create_matrix(const fem::BlockPattern& pattern)
@@ -201,6 +207,13 @@ void LinearSystem::set_up()
     throw core::option_error("option -" + settings_.prefix + "pc_type: PETSc has no " + describe() +
                              " on " + std::to_string(space_->comm().size()) +
                              " ranks (bjacobi and asm take one for each rank)");
+  if (code != 0 && version_ == 0) {  // what is there already is good
+    try {
+      TROCAR_PETSC(code);
+    } catch (const core::Failure& failure) {
+      throw core::option_error("option -" + settings_.prefix + "…: " + failure.what());
+    }
+  }
   TROCAR_PETSC(code);
 }
 

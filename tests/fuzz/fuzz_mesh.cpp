@@ -8,8 +8,6 @@
 #include "mesh/soundness.hpp"
 #include "mutate.hpp"
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
-
 namespace trocar::fuzz {
 namespace {
 
@@ -141,11 +139,7 @@ bool past_header(const std::uint8_t* data, std::size_t size)
   return text.rfind("$MeshFormat\n4.1 ", 0) == 0 || text.rfind("$MeshFormat\n2.2 ", 0) == 0;
 }
 
-Tally& tally()
-{
-  static Tally all("mesh");
-  return all;
-}
+Tally tally("mesh");
 
 }  // namespace
 }  // namespace trocar::fuzz
@@ -153,18 +147,17 @@ Tally& tally()
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   using namespace trocar;
-  fuzz::Tally& tally = fuzz::tally();
-  ++tally.inputs;
-  if (fuzz::past_header(data, size)) ++tally.past_header;
+  ++fuzz::tally.inputs;
+  if (fuzz::past_header(data, size)) ++fuzz::tally.past_header;
   try {
     const io::MshFile file = io::read_msh(fuzz::file_with(data, size));
-    ++tally.read;
+    ++fuzz::tally.read;
     mesh::Mesh mesh = io::mesh_of(file, 1e-3);
     mesh::drop_repeated(mesh);
     mesh.index_middles();
     mesh::validate(mesh);
     mesh::judge(mesh);
-    ++tally.accepted;
+    ++fuzz::tally.accepted;
   } catch (const core::Failure& failure) {
     fuzz::require_one_line(failure, core::ExitCode::data);
   }

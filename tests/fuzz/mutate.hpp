@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "core/failure.hpp"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 // What the fuzz targets share: changes of the kind that people, programs and disks make to files.
 namespace trocar::fuzz {
@@ -163,5 +166,23 @@ struct Tally
     return inputs ? 100.0 * static_cast<double>(n) / static_cast<double>(inputs) : 0.0;
   }
 };
+
+/// The body of a custom mutator of texts: changes the input or, now and then, `scene`, or leaves
+/// it to libFuzzer.
+inline std::size_t mutate_text(const char* scene, std::uint8_t* data, std::size_t size,
+                               std::size_t most, unsigned seed)
+{
+  Random random(seed);
+  std::string text(reinterpret_cast<const char*>(data), size);
+  if (below(random, 4) == 0 || size < 5) text = scene;
+  for (std::size_t changes = 1 + below(random, 3); changes > 0; --changes) {
+    const std::size_t kind = below(random, 8);
+    if (kind == 7) return LLVMFuzzerMutate(data, size, most);
+    text = kind < 4 ? change_word(text, random) : change_lines(text, random);
+  }
+  text.resize(std::min(text.size(), most));
+  std::memcpy(data, text.data(), text.size());
+  return text.size();
+}
 
 }  // namespace trocar::fuzz

@@ -54,7 +54,7 @@ tiny_rubber = {**tiny, "-tissue_model": "neo_hookean", "-gravity": "0,0,-9.81",
 # entry is through an edge of a curved surface.
 edges = {"-mesh": small_block(), "-tissue_element": "p2", "-tissue_poisson": "0.499",
          "-tissue_young": "20000", "-analysis": "static", "-fix": "z0", "-time_step": "0.1",
-         "-time_end": "0.8", "-boundary_x1_displacement": "-0.001,free,free", "-needles": "a,b",
+         "-time_end": "0.8", "-boundary_z1_displacement": "-0.001,free,free", "-needles": "a,b",
          "-needle_a_entry": "0,0.02,0.02", "-needle_length": "0.1", "-needle_elements": "8",
          "-needle_b_entry": "0.0293,0.04,0.0171", "-needle_b_direction": "0,-1,0",
          "-needle_velocity": "0.06", "-needle_depth": "0.03", "-needle_hold": "0.1",

@@ -181,6 +181,7 @@ TEST_F(OptionSource, PetscGetsWhatCanDoNoHarm)
       {"-tissue_pc_type", "a/b"},
       {"-tissue_mat_mumps_ooc_tmpdir", "x"},
       {"-tissue_mat_mumps_icntl_22", "1"},
+      {"-tissue_mat_mumps_icntl_2", "8"},
       {"-tissue_pc_factor_mat_solver_type", "superlu_dist"}};
   for (const auto& words : harmful) {
     const std::string line = refused(words);
