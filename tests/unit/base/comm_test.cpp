@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -122,8 +124,18 @@ TEST(AgreedFailures, OfUnknownKindAreInternal)
   });
   EXPECT_EQ(of_last.first, ExitCode::internal);
   EXPECT_EQ(of_last.second, "row 7");
-  const auto of_root = refusal([&] { on_root(comm, [] { throw std::bad_alloc(); }); });
-  EXPECT_EQ(of_root.first, ExitCode::internal);
+}
+
+TEST(AgreedFailures, OfMemoryAndFileSystemsHaveCodesOfTheirOwn)
+{
+  const Comm comm(MPI_COMM_WORLD);
+  const auto of_memory = refusal([&] { on_root(comm, [] { throw std::bad_alloc(); }); });
+  EXPECT_EQ(of_memory.first, ExitCode::solver);
+  EXPECT_EQ(of_memory.second, "the memory does not suffice");
+  const auto of_files = refusal([&] {
+    on_root(comm, [] { static_cast<void>(std::filesystem::file_size("no_such_file")); });
+  });
+  EXPECT_EQ(of_files.first, ExitCode::output);
 }
 
 }  // namespace
