@@ -2,22 +2,14 @@
 
 #include <hdf5.h>
 
-#include <ctime>
 
 #include "base/petsc.hpp"
+#include "core/date.hpp"
 #include "core/words.hpp"
 #include "driver/build_info.hpp"
 
 namespace trocar::driver {
 namespace {
-
-std::string utc_now()
-{
-  const std::time_t now = std::time(nullptr);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-  return text;
-}
 
 std::string petsc_version()
 {
@@ -61,7 +53,7 @@ io::Provenance provenance(const Simulation& simulation, const Invocation& invoca
              {"git_commit", build_info::git_commit},
              {"build_type", build_info::build_type},
              {"compiler", build_info::compiler},
-             {"created_utc", utc_now()},
+             {"created_utc", core::utc_now()},
              {"command_line", core::join(invocation.arguments, " ")},
              {"mpi_ranks", std::to_string(simulation.space().comm().size())},
              {"petsc_version", petsc_version()},

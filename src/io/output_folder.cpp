@@ -8,14 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
-#include <sstream>
 
+#include "core/date.hpp"
 #include "core/failure.hpp"
 
 namespace trocar::io {
@@ -27,14 +24,6 @@ std::string host()
 {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
-
-std::string utc_now()
-{
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::ostringstream text;
-  text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
-  return text.str();
 }
 
 /// What is at a path itself, not behind a link there.
@@ -72,16 +61,6 @@ void remove_ours(const std::string& folder, const Ours& ours)
   if (trouble) throw core::output_error("cannot clear " + folder + ": " + trouble.message());
 }
 
-struct stat status_of(const base::Descriptor& file)
-{
-  struct stat status
-  {
-  };
-  if (::fstat(file.number(), &status) != 0)
-    throw core::output_error(std::string("cannot lock the output folder: ") + std::strerror(errno));
-  return status;
-}
-
 base::Descriptor opened(const std::string& lock)
 {
   return {lock, O_RDWR | O_CREAT};
@@ -90,12 +69,10 @@ base::Descriptor opened(const std::string& lock)
 /// The file is still the one of that name.
 bool is_at(const base::Descriptor& file, const std::string& path)
 {
-  struct stat there
-  {
-  };
-  const struct stat here = status_of(file);
-  return ::lstat(path.c_str(), &there) == 0 && there.st_ino == here.st_ino &&
-         there.st_dev == here.st_dev;
+  using Status = struct stat;
+  Status there{}, here{};
+  return ::fstat(file.number(), &here) == 0 && ::lstat(path.c_str(), &there) == 0 &&
+         there.st_ino == here.st_ino && there.st_dev == here.st_dev;
 }
 
 }  // namespace
@@ -145,8 +122,8 @@ void OutputFolder::lock()
     throw core::output_error("folder " + path_ + " belongs to a run (" + words +
                              (elsewhere ? "); if that is over, remove " + file : ")"));
   if (!said.empty()) remark_ = "the lock of a run that died was taken over (" + words + ")";
-  const std::string text =
-      "host " + host() + "\nprocess " + std::to_string(::getpid()) + "\nsince " + utc_now() + "\n";
+  const std::string text = "host " + host() + "\nprocess " + std::to_string(::getpid()) +
+                           "\nsince " + core::utc_now() + "\n";
   if (::ftruncate(mine.number(), 0) != 0)
     throw core::output_error("cannot lock " + file + ": " + std::strerror(errno));
   mine.write_at(0, text);

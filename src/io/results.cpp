@@ -45,8 +45,8 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Proven
   file.make_group("/ledger");
   for (const auto& [name, count] : core::Ledger().entries())
     file.attribute("/ledger", std::string(name), count);
-  folder_.clear();
   place(file);
+  folder_.clear();  // not before the new file is there: the disk may be full
 }
 
 Results::~Results()

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -224,6 +226,32 @@ TEST(Results, TouchNothingThatIsNotTheirs)
     results.write_fields(2, 0.0, {}, {}, {});  // replaces the link, not what it points at
     EXPECT_EQ(test::file_text("results_victim/a"), "secret");
     EXPECT_THROW(Results("", mesh, {}, {}), core::Failure);
+  });
+}
+
+// A run that cannot begin leaves the last one's results as they are.
+TEST(Results, OfAnEarlierRunStayUntilTheNewOnesAreThere)
+{
+  const mesh::Mesh mesh = test::block({1, 1, 1});
+  base::on_root(base::Comm(MPI_COMM_WORLD), [&] {
+    fs::remove_all("results_full");
+    {
+      Results results("results_full", mesh, {}, {{"time", 0, "s"}});
+      results.append_history({{1.0}}, {});
+      results.write_fields(0, 0.0, {}, {}, {});
+    }
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit small{1000, before.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &small);
+    EXPECT_THROW(Results("results_full", mesh, {}, {{"time", 0, "s"}}), core::Failure);
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(files_of("results_full"), (std::vector<std::string>{"fields", "run.h5", "run.xdmf"}));
+    EXPECT_EQ(files_of("results_full/fields"), std::vector<std::string>{"step_000000.h5"});
+    EXPECT_EQ(test::H5Reader("results_full/run.h5").dataset("/history/time").values,
+              std::vector<double>{1.0});
   });
 }
 
