@@ -2,7 +2,6 @@
 
 #include <hdf5.h>
 
-
 #include "base/petsc.hpp"
 #include "core/date.hpp"
 #include "core/words.hpp"
