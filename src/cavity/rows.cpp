@@ -62,7 +62,7 @@ double Cavities::amount_at_reference(int i, const State& state, double at_zero) 
 Fluid Cavities::fluid(const State& state, const VecX& p, const TimeStep& now) const
 {
   Fluid fluid{VecX::Zero(size()), MatX::Zero(size(), size()), VecX::Zero(size())};
-  const bool flowing = !settings_.edges.empty() && now.t > 0.0;  // the start takes no time
+  const bool flowing = !settings_.edges.empty() && !now.start;
   law::Flows network;
   if (flowing) network = flows(state, p, now.t);
   VecX root = VecX::Ones(size());  // of the densities
@@ -199,7 +199,7 @@ std::vector<CavityReport> Cavities::accept(State& state, const OwnedField& u, co
   const VecX p = pressures(state);
   const Fluid fluids = fluid(state, p, now);
   std::vector<CavityReport> reports;
-  const bool starts = !(now.t > 0.0) && now.load >= 1.0;
+  const bool starts = now.start && now.load >= 1.0;
   for (int i = 0; i < size(); ++i) {
     const CavitySettings& one = settings_.cavities[index(i)];
     CavityState& mine = state.cavity[index(i)];
@@ -217,7 +217,7 @@ std::vector<CavityReport> Cavities::accept(State& state, const OwnedField& u, co
     report.alarm = one.alarm > 0.0 && std::abs(p[i] - mine.start_pressure) >= one.alarm;
     reports.push_back(report);
   }
-  if (settings_.edges.empty() || !(now.t > 0.0)) return reports;
+  if (settings_.edges.empty() || now.start) return reports;
   const law::Flows network = flows(state, p, now.t);
   for (std::size_t e = 0; e < state.edge.size(); ++e) {
     state.edge[e].flow = network.edge[static_cast<Eigen::Index>(e)];

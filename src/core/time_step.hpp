@@ -25,6 +25,16 @@ struct TimeStep
   double load = 1.0;  ///< share of gravity, traction and prescribed displacement (load steps)
   double lead = 1.0;  ///< of u in h v = lead (u - û): 1 backward Euler, 3/2 BDF2 (û: the past)
   std::optional<double> interval{};  ///< h̄ > 0 in a = (v - v̂)/h̄ [s]; none: h
+  /// The state before the first step: it takes no time, so that nothing flows, slides or advances.
+  bool start = false;
+
+  /// The equilibrium before the first step, at t = 0; `h`: of the steps to come [s].
+  static TimeStep at_start(double h)
+  {
+    TimeStep now{0.0, h, true};
+    now.start = true;
+    return now;
+  }
 
   Rates rates() const
   {

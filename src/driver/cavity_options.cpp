@@ -145,23 +145,25 @@ void require_one_way(const std::vector<cavity::CavitySettings>& cavities)
 
 void read_pv_curve(Options& options, Scenario& scenario)
 {
-  PvSettings& pv = scenario.pv;
+  post::PvSettings pv;
   const std::string name = options.text("pv_cavity");
   pv.low = options.real("pv_low");
   pv.high = options.real("pv_high");
   pv.points = options.integer("pv_points");
   pv.pieces = options.integer("pv_pieces");
   const auto& cavities = scenario.cavities.cavities;
+  const bool swept = options.text("analysis") == "pv_curve";
   for (const char* option : {"pv_cavity", "pv_low", "pv_high", "pv_points", "pv_pieces"})
-    if (options.given(option) && scenario.time.analysis != Analysis::pv_curve)
+    if (options.given(option) && !swept)
       throw core::option_error("option -" + std::string(option) + ": is for -analysis pv_curve");
-  if (scenario.time.analysis != Analysis::pv_curve) return;
+  if (!swept) return;
   if (cavities.empty())
     throw core::option_error("option -analysis pv_curve: the scene has no cavity (-cavities)");
   if (!name.empty()) pv.cavity = cavity_index(cavities, name, "pv_cavity");
   if (pv.cavity < 0) throw core::option_error("option -pv_cavity: outside has no volume");
   if (!(pv.low < 1.0) || !(pv.high > 1.0))
     throw core::option_error("option -pv_low, -pv_high: the curve goes from below 1 to above it");
+  scenario.pv = pv;
 }
 
 }  // namespace

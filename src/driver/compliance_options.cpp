@@ -23,8 +23,8 @@ void read_compliance(core::Options& options, Scenario& scenario)
                     tissue.provider == solve::Provider::automatic;
   if (tissue.reuse == solve::Reuse::stale && !ours)
     throw core::option_error("option -compliance_reuse stale: needs the supernodal provider");
-  scenario.output.stale_error = options.flag("compliance_stale_error");
-  if (scenario.output.stale_error && tissue.reuse != solve::Reuse::stale)
+  scenario.stale_error = options.flag("compliance_stale_error");
+  if (scenario.stale_error && tissue.reuse != solve::Reuse::stale)
     throw core::option_error(
         "option -compliance_stale_error: nothing is stale without "
         "-compliance_reuse stale");

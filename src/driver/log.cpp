@@ -10,11 +10,14 @@
 
 namespace trocar::driver {
 
-Log::Log(const Simulation& simulation) : simulation_(&simulation) {}
+Log::Log(const step::Simulation& simulation, const Scenario& scenario)
+    : simulation_(&simulation), scenario_(&scenario)
+{
+}
 
 bool Log::speaks() const
 {
-  return simulation_->space().comm().root() && !simulation_->scenario().output.quiet;
+  return simulation_->space().comm().root() && !scenario_->output.quiet;
 }
 
 void Log::plan() const
@@ -27,7 +30,7 @@ void Log::set_up(double seconds) const
 {
   const std::string solver = simulation_->tissue().describe_solver();
   if (!speaks()) return;
-  const Scenario& scenario = simulation_->scenario();
+  const Scenario& scenario = *scenario_;
   const mesh::Mesh& mesh = scenario.mesh;
   const mesh::Quality q = mesh::quality(mesh);
   std::printf("%s\n", build_description().c_str());
@@ -55,7 +58,7 @@ void Log::set_up(double seconds) const
 
 void Log::cavities(const cavity::Cavities& cavities) const
 {
-  const Scenario& scenario = simulation_->scenario();
+  const Scenario& scenario = *scenario_;
   double softest = std::numeric_limits<double>::infinity(), density = 0.0;
   for (const tissue::Material& m : scenario.tissue.materials) {
     softest = std::min(softest, 0.5 * m.young / (1.0 + m.poisson));
@@ -74,8 +77,7 @@ void Log::cavities(const cavity::Cavities& cavities) const
     }
     // Shear waves that the steps resolve would take the fluid along.
     const double crossing = std::cbrt(wall.volume()) * std::sqrt(density / softest);
-    if (scenario.time.analysis == Analysis::dynamic && scenario.time.step < crossing &&
-        scenario.time.end > 0.0)
+    if (!scenario.time.is_static && scenario.time.step < crossing && scenario.time.end > 0.0)
       std::printf(
           "warning: the fluid has no inertia, but steps of %.3g s resolve waves past the "
           "cavity (%.3g s)\n",
@@ -83,12 +85,12 @@ void Log::cavities(const cavity::Cavities& cavities) const
   }
 }
 
-void Log::step(int number, const State& state, const StepReport& report)
+void Log::step(int number, const step::State& state, const step::StepReport& report)
 {
   if (!speaks()) return;
   warn(state, report);
   energy_ = state.energy;
-  for (const NeedleReport& needle : report.needles) {
+  for (const step::NeedleReport& needle : report.needles) {
     friction_ -= needle.coupling.friction_work;
     cutting_ -= needle.coupling.cutting_work;
   }
@@ -101,11 +103,11 @@ void Log::step(int number, const State& state, const StepReport& report)
   double travel = state.needles.empty() ? 0.0 : state.needles.front().travel;
   double depth = 0.0, force = 0.0;
   for (const needle::NeedleState& needle : state.needles) travel = std::max(travel, needle.travel);
-  for (const NeedleReport& needle : report.needles) {
+  for (const step::NeedleReport& needle : report.needles) {
     depth = std::max(depth, needle.depth);
     force = std::max(force, needle.base.force.norm());
   }
-  const double end = simulation_->scenario().time.end;
+  const double end = scenario_->time.end;
   const double eta = state.t > 0.0 ? watch_.seconds() * (end - state.t) / state.t : std::nan("");
   std::printf("%6d %10.4f %11.3f %10.3f %6d %6d %10.2e %12.5f ", number, state.t, 1e3 * travel,
               1e3 * depth, report.rows, report.iterations, report.residual, force);
@@ -119,17 +121,17 @@ void Log::step(int number, const State& state, const StepReport& report)
 
 /// Of what is taken but should not be: elements that linear tissue was allowed to fold, and energy
 /// out of nothing.
-void Log::warn(const State& state, const StepReport& report)
+void Log::warn(const step::State& state, const step::StepReport& report)
 {
   const bool folded = report.folded >= 0;
   if (folded && !folded_) {
-    const mesh::Mesh& mesh = simulation_->scenario().mesh;
+    const mesh::Mesh& mesh = scenario_->mesh;
     std::printf("warning: at t = %.6g s linear tissue has an element inside out: tet %lld\n",
                 state.t, mesh.elem_tag[static_cast<std::size_t>(report.folded)]);
   }
   folded_ = folded;
   warn_of_supports(state);
-  if (!simulation_->scenario().output.energy || simulation_->scenario().time.second_order) return;
+  if (!scenario_->energy || scenario_->time.second_order) return;
   constexpr double part = 1e-6, rounded = 1e-12;
   turned_over_ += std::abs(state.energy.supplied - energy_.supplied);
   const double gain = energy_.rest() - state.energy.rest();
@@ -141,9 +143,9 @@ void Log::warn(const State& state, const StepReport& report)
   gained_ = gained;
 }
 
-void Log::warn_of_supports(const State& state)
+void Log::warn_of_supports(const step::State& state)
 {
-  const double asked = simulation_->scenario().insertion.tip.radius;
+  const double asked = scenario_->insertion.tip.radius;
   widened_.resize(state.insertions.size(), false);
   for (std::size_t i = 0; i < state.insertions.size(); ++i) {
     const insertion::TipState& tip = state.insertions[i].tip;
@@ -152,7 +154,7 @@ void Log::warn_of_supports(const State& state)
     std::printf(
         "warning: the tip of needle '%s' is carried by the tissue within %.3g m, the local "
         "edge of the mesh, not within -insertion_tip_radius %.3g m\n",
-        simulation_->scenario().needles[i].name.c_str(), tip.radius, asked);
+        scenario_->needles[i].name.c_str(), tip.radius, asked);
   }
 }
 
@@ -172,14 +174,14 @@ void Log::finish() const
       std::printf(" %s %lld", std::string(name).c_str(), static_cast<long long>(count));
   if (!simulation_->needles().empty())
     std::printf("\ndissipated [J]: friction %.4g, cutting %.4g", friction_, cutting_);
-  if (simulation_->scenario().output.energy)
+  if (scenario_->energy)
     std::printf(
         "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "
         "+ friction %.4g + cutting %.4g + damping %.4g + rest %.2g",
         energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start,
         energy_.friction, energy_.cutting, energy_.damping, energy_.rest());
   std::printf("\nfinished in %.1f s; results in %s\n", watch_.seconds(),
-              simulation_->scenario().output.folder.c_str());
+              scenario_->output.folder.c_str());
 }
 
 }  // namespace trocar::driver

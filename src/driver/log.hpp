@@ -3,7 +3,8 @@
 #include <string>
 
 #include "core/stopwatch.hpp"
-#include "driver/simulation.hpp"
+#include "driver/scenario.hpp"
+#include "step/simulation.hpp"
 
 namespace trocar::driver {
 
@@ -11,25 +12,27 @@ namespace trocar::driver {
 class Log
 {
  public:
-  explicit Log(const Simulation& simulation);
+  /// Borrows both.
+  Log(const step::Simulation& simulation, const Scenario& scenario);
 
   /// What the factor will take, before it does. Collective.
   void plan() const;
   void set_up(double seconds) const;  ///< collective (solver description)
-  void step(int number, const State& state, const StepReport& report);
+  void step(int number, const step::State& state, const step::StepReport& report);
   void note(const std::string& line) const;
   void finish() const;
 
  private:
   void cavities(const cavity::Cavities& cavities) const;
-  void warn(const State& state, const StepReport& report);
-  void warn_of_supports(const State& state);
+  void warn(const step::State& state, const step::StepReport& report);
+  void warn_of_supports(const step::State& state);
   bool speaks() const;
 
-  const Simulation* simulation_;
+  const step::Simulation* simulation_;
+  const Scenario* scenario_;
   core::Stopwatch watch_;
   int lines_ = 0;
-  EnergyAccount energy_;                   ///< of the last step
+  step::EnergyAccount energy_;             ///< of the last step
   double friction_ = 0.0, cutting_ = 0.0;  ///< dissipated so far [J]
   double turned_over_ = 0.0;               ///< energy supplied so far, there and back [J]
   bool folded_ = false, gained_ = false;   ///< in the last step: an event is told once

@@ -1,7 +1,6 @@
 #include "driver/program.hpp"
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -12,79 +11,61 @@
 #include "base/petsc.hpp"
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
-#include "driver/error_estimate.hpp"
-#include "driver/locking_gauge.hpp"
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
 #include "driver/petsc_options.hpp"
 #include "driver/provenance.hpp"
-#include "driver/pv_curve.hpp"
 #include "driver/recorder.hpp"
+#include "driver/reports.hpp"
 #include "driver/signals.hpp"
 #include "io/size_field.hpp"
 
 namespace trocar::driver {
 namespace {
 
-constexpr int most_halvings = 8;
-
-/// Takes `old` to the end of a step, in halves when it is rejected. Every accepted part is
-/// recorded. Collective.
-class Clock
+/// Hands what a run tells to results and log.
+class RunObserver final : public step::Observer
 {
  public:
-  Clock(Simulation& simulation, Recorder& recorder, Log& log)
-      : simulation_(simulation), recorder_(recorder), log_(log)
+  /// Fields are written every so many steps, and with the last one.
+  RunObserver(Recorder& recorder, Log& log, long every, long steps)
+      : recorder_(recorder), log_(log), every_(every), steps_(steps)
   {
   }
 
-  State run(State state)
+  void accepted(const step::State& state, const step::StepReport& report,
+                const step::Progress& at) override
   {
-    const TimeSettings& time = simulation_.scenario().time;
-    const long steps = step_count(time);
-    for (long n = 1; n <= steps; ++n) {
-      const bool not_whole = time.step != time.asked;  // T/N times N may miss T by round-off
-      const double t = n == steps && not_whole ? time.end : static_cast<double>(n) * time.step;
-      const bool output =
-          n == steps || n % static_cast<long>(simulation_.scenario().output.every) == 0;
-      state = advance(std::move(state), {t, time.step, time.analysis == Analysis::equilibrium}, 0,
-                      output);
-    }
-    return state;
+    const bool fields = at.whole && (at.nominal == steps_ || at.nominal % every_ == 0);
+    recorder_.record(state, report, at.accepted, at.seconds, fields);
+    log_.step(at.accepted, state, report);
+  }
+
+  void rejected(double t, const std::string& why) override
+  {
+    log_.note("step to t = " + core::shown(t) + " s rejected: " + why);
   }
 
  private:
-  State advance(State old, const core::TimeStep& now, int halvings, bool output)
-  {
-    const core::Stopwatch watch;
-    StepResult result =
-        now.is_static ? simulation_.equilibrium(old, now) : simulation_.step(old, now);
-    if (result.state) {
-      ++simulation_.ledger().steps;
-      ++accepted_;
-      const double seconds = simulation_.space().comm().max(watch.seconds());
-      recorder_.record(simulation_, *result.state, result.report, accepted_, seconds, output);
-      log_.step(accepted_, *result.state, result.report);
-      return std::move(*result.state);
-    }
-    ++simulation_.ledger().rejected_steps;
-    log_.note("step to t = " + core::shown(now.t) + " s rejected: " + result.why);
-    if (halvings == most_halvings)
-      throw core::solver_error("at t = " + core::shown(old.t) + " s: " + result.why +
-                               " (the step was halved " + std::to_string(halvings) + " times)");
-    core::TimeStep half = now;
-    half.h = 0.5 * now.h;
-    half.t = now.t - half.h;
-    old = advance(std::move(old), half, halvings + 1, false);
-    half.t = now.t;
-    return advance(std::move(old), half, halvings + 1, output);
-  }
-
-  Simulation& simulation_;
   Recorder& recorder_;
   Log& log_;
-  int accepted_ = 0;
+  long every_, steps_;
 };
+
+/// Every step or point of a scenario; gives the last state. Collective.
+step::State run_to_end(step::Simulation& simulation, const Scenario& scenario, Recorder& recorder,
+                       Log& log)
+{
+  const bool swept = scenario.pv.has_value();
+  RunObserver observer(recorder, log, swept ? 1 : scenario.output.every,
+                       step::step_count(scenario.time));
+  step::TimeStepper stepper(simulation, observer);
+  step::State start = stepper.start();
+  if (!swept) return stepper.run(std::move(start));
+  post::PvSweep sweep = post::sweep_volume(simulation, *scenario.pv, start, observer);
+  report_pv_curve(sweep.curve, recorder, log);
+  return std::move(sweep.end);
+}
 
 void run_scene(int argc, char** argv, const base::Comm& comm)
 {
@@ -93,9 +74,9 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   core::Options options(option_table(), invocation.given);
   const Scenario scenario = read_scenario(options, comm);
   const core::Stopwatch watch;
-  Simulation simulation(scenario, comm);
+  step::Simulation simulation(scenario, comm);
   simulation.analyse();
-  Log log(simulation);
+  Log log(simulation, scenario);
   log.plan();
   simulation.prepare();
   refuse_unused(simulation.tissue().describe_solver());
@@ -106,18 +87,11 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   }
   if (!scenario.output.size_field.empty())
     base::on_root(comm, [&] { io::require_size_field(scenario.output.size_field); });
-  Recorder recorder(simulation, invocation, options.resolved());
+  Recorder recorder(simulation, scenario, invocation, options.resolved());
   if (scenario.output.locking_gauge) report_locking(simulation, recorder, log);
-  StepResult start = simulation.initial_state();
-  if (!start.state) throw core::solver_error("at the start: " + start.why);
-  recorder.record(simulation, *start.state, start.report, 0, 0.0, true);
-  log.step(0, *start.state, start.report);
-  if (scenario.time.analysis == Analysis::pv_curve)
-    start.state = run_pv_curve(simulation, recorder, log, *start.state);
-  else
-    start.state = Clock(simulation, recorder, log).run(std::move(*start.state));
-  if (scenario.output.error_estimate) report_error(simulation, recorder, log, *start.state);
-  recorder.close(simulation);
+  const step::State end = run_to_end(simulation, scenario, recorder, log);
+  if (scenario.output.error_estimate) report_error(simulation, scenario.output, end, recorder, log);
+  recorder.close();
   log.finish();
 }
 

@@ -42,7 +42,7 @@ std::string build_description()
          build_info::build_type + ", " + build_info::compiler + "), PETSc " + petsc_version();
 }
 
-io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
+io::Provenance provenance(const step::Simulation& simulation, const Invocation& invocation,
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver)
 {
@@ -62,8 +62,8 @@ io::Provenance provenance(const Simulation& simulation, const Invocation& invoca
              {"options_file", invocation.options_file_text},
              {"petsc_options", petsc_options()},
              {"tissue_solver", solver},
-             {"mesh_file", simulation.scenario().mesh.file},
-             {"mesh_hash_fnv1a", simulation.scenario().mesh.hash}};
+             {"mesh_file", simulation.scene().mesh.file},
+             {"mesh_hash_fnv1a", simulation.scene().mesh.hash}};
   std::vector<std::string> names, values, units, sources;
   for (const core::ResolvedOption& option : options) {
     names.push_back(option.name);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "driver/option_source.hpp"
-#include "driver/simulation.hpp"
 #include "io/results.hpp"
+#include "step/simulation.hpp"
 
 namespace trocar::driver {
 
@@ -13,7 +13,7 @@ namespace trocar::driver {
 std::string build_description();
 
 /// What a result file says about where it comes from. `solver` describes the tissue's solver.
-io::Provenance provenance(const Simulation& simulation, const Invocation& invocation,
+io::Provenance provenance(const step::Simulation& simulation, const Invocation& invocation,
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver);
 

@@ -4,16 +4,16 @@
 #include <cstdio>
 
 #include "driver/provenance.hpp"
-#include "driver/stress_fields.hpp"
-
-#include "core/words.hpp"
+#include "post/stress_fields.hpp"
 
 namespace trocar::driver {
 namespace {
 
+using core::Vec3;
+
 void add_energy_series(const Scenario& scenario, std::vector<io::Series>& series)
 {
-  if (scenario.output.energy)
+  if (scenario.energy)
     for (const char* name :
          {"elastic", "kinetic", "supplied", "friction", "cutting", "damping", "rest"})
       series.push_back({std::string("energy/") + name, 0, "J"});
@@ -106,7 +106,7 @@ std::vector<double> components(const Vec3& v)
 }
 
 /// Least distance along the path between neighbouring coupling points; 0 with fewer than two.
-double smallest_gap(const State& state)
+double smallest_gap(const step::State& state)
 {
   double smallest = 0.0;
   for (const auto& insertion : state.insertions)
@@ -117,7 +117,7 @@ double smallest_gap(const State& state)
   return smallest;
 }
 
-void append_cavities(const State& state, const StepReport& report,
+void append_cavities(const step::State& state, const step::StepReport& report,
                      std::vector<std::vector<double>>& row)
 {
   for (const cavity::CavityReport& cavity : report.cavities)
@@ -130,8 +130,8 @@ void append_cavities(const State& state, const StepReport& report,
 }
 
 /// What the step took.
-void append_work(const Simulation& simulation, const StepReport& report, double build_seconds,
-                 double seconds, std::vector<std::vector<double>>& row)
+void append_work(const step::Simulation& simulation, const step::StepReport& report,
+                 double build_seconds, double seconds, std::vector<std::vector<double>>& row)
 {
   for (double value :
        {static_cast<double>(report.compliance.probes), static_cast<double>(report.compliance.built),
@@ -142,11 +142,11 @@ void append_work(const Simulation& simulation, const StepReport& report, double 
     row.push_back({value});
 }
 
-void append_needles(const State& state, const StepReport& report,
+void append_needles(const step::State& state, const step::StepReport& report,
                     std::vector<std::vector<double>>& row)
 {
   for (std::size_t i = 0; i < state.needles.size(); ++i) {
-    const NeedleReport& needle = report.needles[i];
+    const step::NeedleReport& needle = report.needles[i];
     const auto& points = state.insertions[i].points;
     const auto slipping =
         std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.stuck; });
@@ -165,8 +165,9 @@ void append_needles(const State& state, const StepReport& report,
   }
 }
 
-std::vector<std::vector<double>> history_row(const Simulation& simulation, const State& state,
-                                             const StepReport& report, double build_seconds,
+std::vector<std::vector<double>> history_row(const step::Simulation& simulation,
+                                             const step::State& state,
+                                             const step::StepReport& report, double build_seconds,
                                              double seconds)
 {
   std::vector<std::vector<double>> row{{state.t}};
@@ -174,8 +175,8 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
   append_cavities(state, report, row);
   for (const auto* forces : {&report.holders.tools, &report.holders.supports})
     for (const Vec3& force : *forces) row.push_back(components(force));
-  if (simulation.scenario().output.energy) {
-    const EnergyAccount& e = state.energy;
+  if (simulation.scene().energy) {
+    const step::EnergyAccount& e = state.energy;
     for (double value :
          {e.elastic, e.kinetic, e.supplied, e.friction, e.cutting, e.damping, e.rest()})
       row.push_back({value});
@@ -184,7 +185,7 @@ std::vector<std::vector<double>> history_row(const Simulation& simulation, const
                        static_cast<double>(report.iterations), report.residual, report.condition,
                        static_cast<double>(report.outer), report.contraction, smallest_gap(state)})
     row.push_back({value});
-  for (std::size_t i = 0; i < simulation.scenario().compare.size(); ++i) {
+  for (std::size_t i = 0; i < simulation.scene().compare.size(); ++i) {
     const law::Trial trial = report.trials.empty() ? law::Trial{} : report.trials[i];
     for (double value : {static_cast<double>(trial.iterations), static_cast<double>(trial.failures),
                          trial.residual, trial.seconds, trial.factor_seconds})
@@ -202,7 +203,7 @@ io::Field nodal_field(const std::string& name, const std::string& units,
 }
 
 /// Coupling points of all needles, one row each; ids are needle · 10⁶ + site.
-std::vector<io::Field> coupling_fields(const Simulation& simulation, const State& state,
+std::vector<io::Field> coupling_fields(const step::Simulation& simulation, const step::State& state,
                                        const fem::GlobalField& u)
 {
   io::Field id{"/coupling/id", 0, "1", {}, false, true};
@@ -217,7 +218,7 @@ std::vector<io::Field> coupling_fields(const Simulation& simulation, const State
       const auto& point = insertion.points[k];
       const auto& anchor = insertion.path.sites[static_cast<std::size_t>(point.site)].anchor;
       const Vec3 x = anchor.mean([&](int node) -> Vec3 {
-        return simulation.scenario().mesh.x[static_cast<std::size_t>(node)] + u.node(node);
+        return simulation.scene().mesh.x[static_cast<std::size_t>(node)] + u.node(node);
       });
       id.values.push_back(1e6 * static_cast<double>(n) + insertion.path.first_id + point.site);
       position.values.insert(position.values.end(), x.data(), x.data() + 3);
@@ -231,11 +232,11 @@ std::vector<io::Field> coupling_fields(const Simulation& simulation, const State
 }
 
 /// Every needle's axis, so that a picture needs no model of the needle.
-std::vector<io::Curve> needle_curves(const Simulation& simulation, const State& state)
+std::vector<io::Curve> needle_curves(const step::Simulation& simulation, const step::State& state)
 {
   std::vector<io::Curve> curves;
   for (std::size_t n = 0; n < state.needles.size(); ++n) {
-    const needle::NeedleSettings& needle = simulation.scenario().needles[n];
+    const needle::NeedleSettings& needle = simulation.scene().needles[n];
     io::Curve curve{"/needle/" + needle.name, {}, needle.section.outer};
     for (const Vec3& x : state.needles[n].shaft.x)
       curve.points.insert(curve.points.end(), x.data(), x.data() + 3);
@@ -246,24 +247,24 @@ std::vector<io::Curve> needle_curves(const Simulation& simulation, const State& 
 
 }  // namespace
 
-Recorder::Recorder(const Simulation& simulation, const Invocation& invocation,
-                   const std::vector<core::ResolvedOption>& options)
+Recorder::Recorder(const step::Simulation& simulation, const Scenario& scenario,
+                   const Invocation& invocation, const std::vector<core::ResolvedOption>& options)
+    : simulation_(&simulation), output_(&scenario.output)
 {
   const std::string solver = simulation.tissue().describe_solver();
   base::on_root(simulation.space().comm(), [&] {
-    const Scenario& scenario = simulation.scenario();
     results_.emplace(scenario.output.folder, scenario.mesh,
                      provenance(simulation, invocation, options, solver), series_of(scenario),
-                     static_cast<std::size_t>(step_count(scenario.time)) + 1);
+                     static_cast<std::size_t>(step::step_count(scenario.time)) + 1);
     if (!results_->remark().empty()) std::printf("note: %s\n", results_->remark().c_str());
   });
 }
 
-void Recorder::record(const Simulation& simulation, const State& state, const StepReport& report,
-                      int step, double seconds, bool with_fields)
+void Recorder::record(const step::State& state, const step::StepReport& report, int step,
+                      double seconds, bool with_fields)
 {
-  const fem::Space& space = simulation.space();
-  const OutputSettings& output = simulation.scenario().output;
+  const fem::Space& space = simulation_->space();
+  const OutputSettings& output = *output_;
   const double build_seconds = space.comm().max(report.compliance.seconds);
   std::vector<io::Field> fields;
   // Without output fields nothing is gathered and no field file is made.
@@ -272,28 +273,29 @@ void Recorder::record(const Simulation& simulation, const State& state, const St
     if (output.displacement) fields.push_back(nodal_field("/displacement", "m", u));
     if (output.velocity)
       fields.push_back(nodal_field("/velocity", "m/s", space.gather(state.tissue.v)));
-    for (auto& field : stress_fields(simulation, state)) fields.push_back(std::move(field));
-    for (auto& field : coupling_fields(simulation, state, u)) fields.push_back(std::move(field));
+    for (auto& field : post::stress_fields(*simulation_, state, output.stress))
+      fields.push_back(std::move(field));
+    for (auto& field : coupling_fields(*simulation_, state, u)) fields.push_back(std::move(field));
   }
   base::on_root(space.comm(), [&] {
-    results_->append_history(history_row(simulation, state, report, build_seconds, seconds),
-                             simulation.ledger());
+    results_->append_history(history_row(*simulation_, state, report, build_seconds, seconds),
+                             simulation_->ledger());
     if (fields.empty()) return;
     std::vector<std::string> notes;
     if (report.nonunique) notes.emplace_back("lambda_nonunique");
-    results_->write_fields(step, state.t, fields, needle_curves(simulation, state), notes);
+    results_->write_fields(step, state.t, fields, needle_curves(*simulation_, state), notes);
   });
 }
 
-void Recorder::table(const Simulation& simulation, const std::string& path,
-                     const std::vector<double>& values, const std::string& units)
+void Recorder::table(const std::string& path, const std::vector<double>& values,
+                     const std::string& units)
 {
-  base::on_root(simulation.space().comm(), [&] { results_->write_table(path, values, units); });
+  base::on_root(simulation_->space().comm(), [&] { results_->write_table(path, values, units); });
 }
 
-void Recorder::close(const Simulation& simulation)
+void Recorder::close()
 {
-  base::on_root(simulation.space().comm(), [&] { results_->close(); });
+  base::on_root(simulation_->space().comm(), [&] { results_->close(); });
 }
 
 }  // namespace trocar::driver

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "driver/option_source.hpp"
-#include "driver/simulation.hpp"
+#include "driver/scenario.hpp"
 #include "io/results.hpp"
+#include "step/simulation.hpp"
 
 namespace trocar::driver {
 
@@ -14,21 +15,23 @@ namespace trocar::driver {
 class Recorder
 {
  public:
-  /// Makes the result folder on rank 0; Failure (74) on every rank. Collective.
-  Recorder(const Simulation& simulation, const Invocation& invocation,
-           const std::vector<core::ResolvedOption>& options);
+  /// Borrows simulation and scenario. Makes the result folder on rank 0; Failure (74) on every
+  /// rank. Collective.
+  Recorder(const step::Simulation& simulation, const Scenario& scenario,
+           const Invocation& invocation, const std::vector<core::ResolvedOption>& options);
 
   /// One history row, and a field file when `with_fields`. `step` counts accepted steps.
   /// Collective.
-  void record(const Simulation& simulation, const State& state, const StepReport& report, int step,
-              double seconds, bool with_fields);
+  void record(const step::State& state, const step::StepReport& report, int step, double seconds,
+              bool with_fields);
 
   /// A dataset of its own in run.h5. Collective.
-  void table(const Simulation& simulation, const std::string& path,
-             const std::vector<double>& values, const std::string& units);
-  void close(const Simulation& simulation);  ///< collective
+  void table(const std::string& path, const std::vector<double>& values, const std::string& units);
+  void close();  ///< collective
 
  private:
+  const step::Simulation* simulation_;
+  const OutputSettings* output_;
   std::optional<io::Results> results_;  ///< on rank 0 only
 };
 

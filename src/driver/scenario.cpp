@@ -181,7 +181,6 @@ OutputSettings read_output(Options& options)
     throw core::option_error("option -output_dir: the name of a folder is missing");
   output.every = options.integer("output_every");
   output.quiet = options.flag("quiet");
-  output.energy = options.flag("output_energy");
   output.error_target = options.real("error_target");
   constexpr double least_target = 1e-6;  // nearer to round-off the estimate means nothing
   if (output.error_target > 0.0 && output.error_target < least_target)
@@ -246,6 +245,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.laws = read_laws(options);
   scenario.compare = read_compare(options, scenario.laws);
   scenario.output = read_output(options);
+  scenario.energy = options.flag("output_energy");
   scenario.check_only = options.flag("check");
   const std::string file = options.text("mesh");
   if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");

@@ -9,7 +9,7 @@ namespace {
 
 void refuse_dashpots_without_time(const Scenario& scenario)
 {
-  if (scenario.time.analysis == Analysis::dynamic || scenario.time.end > 0.0) return;
+  if (!scenario.time.is_static || scenario.time.end > 0.0) return;
   for (const auto& friction : scenario.insertion.friction)
     if (friction.advance.viscous > 0.0 || friction.withdraw.viscous > 0.0)
       throw core::option_error(
@@ -23,7 +23,7 @@ void refuse_idle(const Scenario& scenario)
   const auto refuse = [](bool idle, const std::string& why) {
     if (idle) throw core::option_error("option -" + why);
   };
-  refuse(scenario.time.second_order && scenario.time.analysis != Analysis::dynamic,
+  refuse(scenario.time.second_order && scenario.time.is_static,
          "time_scheme bdf2: statics have no time derivatives");
   refuse(scenario.tissue.tangent == tissue::Tangent::exact &&
              scenario.tissue.model == tissue::Model::linear,
@@ -55,11 +55,11 @@ void refuse_crowded(const Scenario& scenario)
 
 void add_warnings(Scenario& scenario)
 {
-  const TimeSettings& time = scenario.time;
+  const step::TimeSettings& time = scenario.time;
   if (time.step != time.asked)
     scenario.warnings.push_back("-time_end " + core::shown(time.end) +
                                 " is not a whole number of -time_step " + core::shown(time.asked) +
-                                ": " + std::to_string(step_count(time)) + " equal steps of " +
+                                ": " + std::to_string(step::step_count(time)) + " equal steps of " +
                                 core::shown(time.step) + " s are taken");
   for (std::size_t i = 0; i < scenario.tissue.materials.size(); ++i)
     if (scenario.tissue.materials[i].poisson > 0.45 && !scenario.mesh.quadratic() &&

@@ -1,7 +1,6 @@
 #include "driver/time_options.hpp"
 
 #include <cmath>
-#include <map>
 #include <sstream>
 
 #include "core/words.hpp"
@@ -36,10 +35,10 @@ int read_newton(core::Options& options)
 }  // namespace
 
 /// A run without a step, or with more than anyone could want, is a slip of the pen.
-static void check_steps(const TimeSettings& time)
+static void check_steps(const step::TimeSettings& time)
 {
   constexpr double most_steps = 1e9, within = 1.0 - 1e-6;
-  if (time.analysis == Analysis::pv_curve || time.end == 0.0) return;
+  if (time.end == 0.0) return;
   if (time.end < within * time.asked)
     throw core::option_error("option -time_end: the end, " + core::shown(time.end) +
                              " s, lies within the first step, -time_step " +
@@ -49,27 +48,20 @@ static void check_steps(const TimeSettings& time)
                              " steps to the end, more than 1e9");
 }
 
-TimeSettings read_time(core::Options& options)
+step::TimeSettings read_time(core::Options& options)
 {
-  TimeSettings time;
-  const std::map<std::string, Analysis> analyses{{"dynamic", Analysis::dynamic},
-                                                 {"static", Analysis::equilibrium},
-                                                 {"pv_curve", Analysis::pv_curve}};
-  time.analysis = analyses.at(options.text("analysis"));
+  step::TimeSettings time;
+  const std::string analysis = options.text("analysis");
+  time.is_static = analysis != "dynamic";
   time.asked = options.real("time_step");
   time.end = options.real("time_end");
-  check_steps(time);
+  if (analysis != "pv_curve") check_steps(time);
   time.step = equal_steps(time.asked, time.end);
   time.start_in_equilibrium = options.text("time_initial") == "equilibrium";
   time.second_order = options.text("time_scheme") == "bdf2";
   time.newton_max = read_newton(options);
   time.direction_max = options.integer("constraint_direction_max");
   return time;
-}
-
-long step_count(const TimeSettings& time)
-{
-  return std::lround(time.end / time.step);
 }
 
 }  // namespace trocar::driver

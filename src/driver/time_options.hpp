@@ -6,6 +6,6 @@
 namespace trocar::driver {
 
 /// Kind of analysis, steps, and how often each is linearised. Throws Failure (64).
-TimeSettings read_time(core::Options& options);
+step::TimeSettings read_time(core::Options& options);
 
 }  // namespace trocar::driver

@@ -33,7 +33,7 @@ void Tissue::begin_approach(const TissueState& old, const TimeStep& step, const 
   approach.stiffness = more.stiffness;
   approach.least = least;
   OwnedField ahead = space_->zero();
-  if (step.t > 0.0 && !goes_on) {
+  if (!step.start && !goes_on) {
     ahead.value = step.h * old.v.value;
     fixed_.clear(ahead);
   }

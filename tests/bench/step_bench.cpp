@@ -36,9 +36,9 @@ struct Bench
 };
 
 /// A needle that slips through the bar; its upper side moves so that the rotation grows evenly.
-driver::Scenario scene(const test::BlockShape& shape, double friction)
+step::Scene scene(const test::BlockShape& shape, double friction)
 {
-  driver::Scenario scenario = test::needle_scenario(shape);
+  step::Scene scenario = test::needle_scenario(shape);
   scenario.insertion.friction = test::same({friction, friction, 0.0});
   scenario.time.step = 0.01;
   scenario.tissue.model = tissue::Model::corotational;
@@ -59,7 +59,7 @@ driver::Scenario scene(const test::BlockShape& shape, double friction)
 
 struct Course
 {
-  std::vector<driver::State> states;  ///< before each measured step, and at the end
+  std::vector<step::State> states;  ///< before each measured step, and at the end
   std::vector<double> seconds;
   int passes = 0, rows = 0, age = 0;
 };
@@ -70,29 +70,29 @@ double median(std::vector<double> values)
   return values[values.size() / 2];
 }
 
-driver::State must(const driver::StepResult& result)
+step::State must(const step::StepResult& result)
 {
   if (!result.state) throw core::solver_error("rejected: " + result.why);
   return *result.state;
 }
 
-core::TimeStep time_of(const driver::Scenario& scenario, int n)
+core::TimeStep time_of(const step::Scene& scenario, int n)
 {
   return {n * scenario.time.step, scenario.time.step, false};
 }
 
 /// All steps with an older factor; the last ones are timed.
-Course lagged(driver::Scenario scenario, double tolerance, const base::Comm& comm)
+Course lagged(step::Scene scenario, double tolerance, const base::Comm& comm)
 {
   scenario.tissue.lag_tolerance = tolerance;
-  driver::Simulation simulation(scenario, comm);
+  step::Simulation simulation(scenario, comm);
   Course course;
-  driver::State state = must(simulation.initial_state());
+  step::State state = must(simulation.initial_state());
   for (int n = 1; n <= ramp_steps; ++n) {
     const bool timed = n > ramp_steps - measured_steps;
     if (timed) course.states.push_back(state);
     const core::Stopwatch watch;
-    const driver::StepResult result = simulation.step(state, time_of(scenario, n));
+    const step::StepResult result = simulation.step(state, time_of(scenario, n));
     if (timed) course.seconds.push_back(watch.seconds());
     state = must(result);
     course.passes = result.report.passes;
@@ -104,18 +104,18 @@ Course lagged(driver::Scenario scenario, double tolerance, const base::Comm& com
 }
 
 /// The last steps of a course again, from the same states, by other means.
-Course again(driver::Scenario scenario, const Course& model, std::size_t steps,
+Course again(step::Scene scenario, const Course& model, std::size_t steps,
              const base::Comm& comm)
 {
   scenario.tissue.lag_tolerance = 0.0;
-  driver::Simulation simulation(scenario, comm);
+  step::Simulation simulation(scenario, comm);
   simulation.prepare();  // analysis and first factor are not part of a step
   Course course;
   const std::size_t first = model.states.size() - 1 - steps;
   for (std::size_t k = first; k + 1 < model.states.size(); ++k) {
     const int n = ramp_steps - static_cast<int>(model.states.size() - 2 - k);
     const core::Stopwatch watch;
-    const driver::StepResult result = simulation.step(model.states[k], time_of(scenario, n));
+    const step::StepResult result = simulation.step(model.states[k], time_of(scenario, n));
     course.seconds.push_back(watch.seconds());
     course.states.push_back(must(result));
   }
@@ -123,7 +123,7 @@ Course again(driver::Scenario scenario, const Course& model, std::size_t steps,
 }
 
 /// Worst difference of the displacements against the way of the last step.
-double error_of_change(const Course& course, const driver::State& exact)
+double error_of_change(const Course& course, const step::State& exact)
 {
   const auto& last = course.states.back().tissue.u.value;
   const auto& before = course.states[course.states.size() - 2].tissue.u.value;
@@ -154,12 +154,12 @@ void run(Bench bench, double friction, bool with_columns)
   while (3 * (15 * n / 4 + 1) * (n + 1) * (n + 1) < bench.dofs) ++n;
   const test::BlockShape shape{15 * n / 4, n, n, size, 0.15};
   bench.dofs = 3 * (15 * n / 4 + 1) * (n + 1) * (n + 1);
-  driver::Scenario scenario = scene(shape, friction);
+  step::Scene scenario = scene(shape, friction);
   Course course;
   for (const auto& [name, tolerance] :
        {std::pair{"lag_1e-3", 1e-3}, std::pair{"lag_1e-4", 1e-4}, std::pair{"lag_1e-6", 1e-6}}) {
     course = lagged(scenario, tolerance, comm);
-    const driver::State exact = again(scenario, course, 1, comm).states.back();
+    const step::State exact = again(scenario, course, 1, comm).states.back();
     bench.figure(name + std::string("_step"), median(course.seconds), "s");
     bench.figure(name + std::string("_error"), error_of_change(course, exact), "1");
     bench.figure(name + std::string("_passes"), course.passes, "1");

@@ -16,12 +16,12 @@ void add_surface(mesh::Mesh& mesh, const std::string& name,
   mesh.surfaces.push_back(std::move(surface));
 }
 
-driver::Scenario fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
+step::Scene fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
                               cavity::Model model)
 {
-  driver::Scenario scenario;
+  step::Scene scenario;
   scenario.mesh = std::move(mesh);
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.time.is_static = true;
   scenario.tissue.model = tissue::Model::linear;
   scenario.tissue.materials = {material};
   cavity::CavitySettings one;
@@ -32,16 +32,16 @@ driver::Scenario fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
   return scenario;
 }
 
-driver::Scenario cavity_scenario(int n, int hole, cavity::Model model, cavity::Solver solver)
+step::Scene cavity_scenario(int n, int hole, cavity::Model model, cavity::Solver solver)
 {
   const double cell = 0.01, size = n * cell, half = 0.5 * hole * cell;
   const auto inside = [=](const core::Vec3& x) {
     return (x.array() - 0.5 * size).abs().maxCoeff() < half * (1.0 + 1e-9);
   };
-  driver::Scenario scenario;
+  step::Scene scenario;
   scenario.mesh = block({n, n, n, core::Vec3::Constant(size), 0.0, inside});
   add_surface(scenario.mesh, "wall", inside);
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.time.is_static = true;
   scenario.time.step = 0.1;
   scenario.tissue.model = tissue::Model::linear;
   scenario.tissue.materials = {{15000.0, 0.4, 1000.0, 0.0, 0.0}};
@@ -55,33 +55,33 @@ driver::Scenario cavity_scenario(int n, int hole, cavity::Model model, cavity::S
   return scenario;
 }
 
-void press(driver::Scenario& scenario, double depth)
+void press(step::Scene& scenario, double depth)
 {
   scenario.tissue.boundary.displacements = {{"z1", core::Vec3(0.0, 0.0, -depth), std::nullopt}};
 }
 
-void add_needle(driver::Scenario& scenario, double y)
+void add_needle(step::Scene& scenario, double y)
 {
-  driver::Scenario with = needle_scenario({});
+  step::Scene with = needle_scenario({});
   scenario.needles = with.needles;
   scenario.needles[0].motion.entry = core::Vec3(0.0, y, 0.0273);
   scenario.insertion = with.insertion;
   scenario.tissue.materials[0].rayleigh_stiffness = 0.02;
-  scenario.time.analysis = driver::Analysis::dynamic;
+  scenario.time.is_static = false;
   scenario.time.step = 0.02;
   scenario.time.end = 1.0;
 }
 
-driver::StepResult solved(driver::Simulation& simulation)
+step::StepResult solved(step::Simulation& simulation)
 {
-  driver::StepResult result = simulation.initial_state();
+  step::StepResult result = simulation.initial_state();
   if (!result.state) throw core::solver_error(result.why);
   return result;
 }
 
-driver::StepReport solved(const driver::Scenario& scenario)
+step::StepReport solved(const step::Scene& scenario)
 {
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
   return solved(simulation).report;
 }
 

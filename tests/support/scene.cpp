@@ -4,9 +4,9 @@
 
 namespace trocar::test {
 
-driver::Scenario needle_scenario(const BlockShape& shape)
+step::Scene needle_scenario(const BlockShape& shape)
 {
-  driver::Scenario scenario;
+  step::Scene scenario;
   scenario.mesh = block(shape);
   scenario.time.step = 0.02;
   scenario.tissue.model = tissue::Model::linear;
@@ -26,35 +26,49 @@ driver::Scenario needle_scenario(const BlockShape& shape)
   return scenario;
 }
 
-Run run(const driver::Scenario& scenario)
+namespace {
+
+/// Keeps everything; a rejected step is not what a test wants.
+struct Keeper : step::Observer
 {
-  const auto steps = static_cast<std::size_t>(driver::step_count(scenario.time));
-  return run(scenario, std::vector<double>(steps, scenario.time.step));
+  void accepted(const step::State& state, const step::StepReport& report,
+                const step::Progress& /*at*/) override
+  {
+    run.states.push_back(state);
+    run.reports.push_back(report);
+  }
+  void rejected(double t, const std::string& why) override
+  {
+    throw core::solver_error("rejected at t = " + std::to_string(t) + ": " + why);
+  }
+  Run run;
+};
+
+}  // namespace
+
+Run run(const step::Scene& scenario)
+{
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  Keeper keeper;
+  step::TimeStepper stepper(simulation, keeper);
+  stepper.run(stepper.start());
+  keeper.run.ledger = simulation.ledger();
+  return keeper.run;
 }
 
-Run run(const driver::Scenario& scenario, const std::vector<double>& lengths)
+Run run(const step::Scene& scenario, const std::vector<double>& lengths)
 {
-  const base::Comm comm(MPI_COMM_WORLD);
-  driver::Simulation simulation(scenario, comm);
-  Run run;
-  driver::StepResult result = simulation.initial_state();
-  const auto keep = [&] {
-    if (!result.state) throw core::solver_error("rejected: " + result.why);
-    run.states.push_back(*result.state);
-    run.reports.push_back(result.report);
-  };
-  keep();
-  const bool is_static = scenario.time.analysis == driver::Analysis::equilibrium;
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  Keeper keeper;
+  step::TimeStepper stepper(simulation, keeper);
+  step::State state = stepper.start();
   double t = 0.0;
   for (double h : lengths) {
     t += h;
-    const core::TimeStep now{t, h, is_static};
-    result = is_static ? simulation.equilibrium(run.states.back(), now)
-                       : simulation.step(run.states.back(), now);
-    keep();
+    state = stepper.advance(state, {t, h, scenario.time.is_static});
   }
-  run.ledger = simulation.ledger();
-  return run;
+  keeper.run.ledger = simulation.ledger();
+  return keeper.run;
 }
 
 }  // namespace trocar::test

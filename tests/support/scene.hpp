@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "driver/simulation.hpp"
+#include "step/time_stepper.hpp"
 #include "support/block.hpp"
 
 namespace trocar::test {
@@ -20,18 +20,18 @@ inline const BlockShape plain{6, 4, 4, core::Vec3(0.06, 0.04, 0.04), 0.0};
 inline const BlockShape distorted{8, 5, 5, core::Vec3(0.06, 0.04, 0.04), 0.25};
 
 /// A needle through a block 6 x 4 x 4 cm, held below; a scenario that tests change as they like.
-driver::Scenario needle_scenario(const BlockShape& shape);
+step::Scene needle_scenario(const BlockShape& shape);
 
 /// All steps of a scenario's run, state and report of each (the start included). Throws when a
 /// step is rejected.
 struct Run
 {
-  std::vector<driver::State> states;
-  std::vector<driver::StepReport> reports;
+  std::vector<step::State> states;
+  std::vector<step::StepReport> reports;
   core::Ledger ledger;
 };
-Run run(const driver::Scenario& scenario);
+Run run(const step::Scene& scenario);
 /// The same with steps of given lengths [s], whatever the scenario says of them.
-Run run(const driver::Scenario& scenario, const std::vector<double>& lengths);
+Run run(const step::Scene& scenario, const std::vector<double>& lengths);
 
 }  // namespace trocar::test

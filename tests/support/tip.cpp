@@ -2,18 +2,18 @@
 
 namespace trocar::test {
 
-driver::Scenario scene(double puncture, double cutting)
+step::Scene scene(double puncture, double cutting)
 {
-  driver::Scenario scenario = needle_scenario(distorted);
+  step::Scene scenario = needle_scenario(distorted);
   scenario.insertion.friction = same({2.0, 2.0, 0.0});
   scenario.insertion.puncture.volume = {puncture};
   scenario.insertion.tip.cutting = {cutting};
   return scenario;
 }
 
-driver::Scenario layered()
+step::Scene layered()
 {
-  driver::Scenario scenario = needle_scenario({6, 4, 4, core::Vec3(0.06, 0.04, 0.04), 0.0});
+  step::Scene scenario = needle_scenario({6, 4, 4, core::Vec3(0.06, 0.04, 0.04), 0.0});
   mesh::Mesh& mesh = scenario.mesh;
   mesh.volumes = {"soft", "stiff"};
   for (int t = 0; t < mesh.tet_count(); ++t) {

@@ -227,7 +227,7 @@ TEST(CavityAlarm, TellsOfAChangeOfPressure)
     state.cavity[0].pressure = pressure;
     return cavities.accept(state, u, cavities.shape(u), now)[0].alarm;
   };
-  EXPECT_FALSE(alarm(1000.0, {0.0, 0.1, true}));
+  EXPECT_FALSE(alarm(1000.0, core::TimeStep::at_start(0.1)));
   EXPECT_FALSE(alarm(1299.0, {0.1, 0.1, false}));
   EXPECT_TRUE(alarm(1301.0, {0.2, 0.1, false}));
   EXPECT_FALSE(alarm(701.0, {0.3, 0.1, false}));

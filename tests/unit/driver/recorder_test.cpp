@@ -11,22 +11,25 @@
 namespace trocar::driver {
 namespace {
 
+using core::Vec3;
 namespace fs = std::filesystem;
 
 /// A small block with a needle in it already, ready to be stepped, and its results.
 struct Recorded
 {
-  explicit Recorded(const std::string& folder, const OutputSettings& output = {})
-      : comm(MPI_COMM_WORLD), scenario(scene(folder, output)), simulation(scenario, comm)
+  explicit Recorded(const std::string& folder, const OutputSettings& output = {},
+                    bool energy = false)
+      : comm(MPI_COMM_WORLD), scenario(scene(folder, output, energy)), simulation(scenario, comm)
   {
     std::error_code nothing_there;
     if (comm.root()) fs::remove_all(folder, nothing_there);
     simulation.prepare();
   }
-  static Scenario scene(const std::string& folder, const OutputSettings& output)
+  static Scenario scene(const std::string& folder, const OutputSettings& output, bool energy)
   {
-    Scenario scenario = test::needle_scenario({3, 2, 2, Vec3(0.06, 0.04, 0.04), 0.1});
+    Scenario scenario{test::needle_scenario({3, 2, 2, Vec3(0.06, 0.04, 0.04), 0.1})};
     scenario.output = output;
+    scenario.energy = energy;
     scenario.output.folder = folder;
     scenario.tissue.boundary.displacements = {{"z1", Vec3(0, 0, 0.001), std::nullopt, {}}};
     scenario.needles[0].motion.inserted = 0.03;
@@ -35,25 +38,25 @@ struct Recorded
 
   base::Comm comm;
   Scenario scenario;
-  Simulation simulation;
+  step::Simulation simulation;
 };
 
 /// Two steps from the start, with fields after every other one.
 void run_two_steps(Recorded& one, Recorder& recorder)
 {
-  StepResult result = one.simulation.initial_state();
+  step::StepResult result = one.simulation.initial_state();
   for (int n = 0; n <= 2; ++n) {
     if (n > 0) result = one.simulation.step(*result.state, {0.02 * n, 0.02, false});
     ASSERT_TRUE(result.state) << result.why;
-    recorder.record(one.simulation, *result.state, result.report, n, 0.5, n % 2 == 0);
+    recorder.record(*result.state, result.report, n, 0.5, n % 2 == 0);
   }
-  recorder.close(one.simulation);
+  recorder.close();
 }
 
 TEST(Recorder, WritesARowOfEveryHistoryInEveryStep)
 {
   Recorded one("recorder_history");
-  Recorder recorder(one.simulation, {{"trocar", "-check"}, "", "", {}, {}},
+  Recorder recorder(one.simulation, one.scenario, {{"trocar", "-check"}, "", "", {}, {}},
                     {{"time_step", "0.02", "s", "command line"}});
   run_two_steps(one, recorder);
   base::on_root(one.comm, [&] {
@@ -91,14 +94,13 @@ TEST(Recorder, WritesTheFieldsThatAreAskedFor)
 {
   OutputSettings output;
   output.velocity = true;
-  output.energy = true;
-  Recorded one("recorder_fields", output);
-  Recorder recorder(one.simulation, {}, {});
-  StepResult result = one.simulation.initial_state();
+  Recorded one("recorder_fields", output, true);
+  Recorder recorder(one.simulation, one.scenario, {}, {});
+  step::StepResult result = one.simulation.initial_state();
   result = one.simulation.step(*result.state, {0.02, 0.02, false});
   ASSERT_TRUE(result.state) << result.why;
-  recorder.record(one.simulation, *result.state, result.report, 7, 0.0, true);
-  recorder.close(one.simulation);
+  recorder.record(*result.state, result.report, 7, 0.0, true);
+  recorder.close();
   const fem::GlobalField u = one.simulation.space().gather(result.state->tissue.u);
   const auto& points = result.state->insertions[0].points;
   EXPECT_GT(points.size(), 1U);
@@ -122,7 +124,7 @@ TEST(Recorder, MakesNoFieldFileWhenNoneIsAskedFor)
   OutputSettings output;
   output.displacement = false;
   Recorded one("recorder_none", output);
-  Recorder recorder(one.simulation, {}, {});
+  Recorder recorder(one.simulation, one.scenario, {}, {});
   run_two_steps(one, recorder);
   base::on_root(one.comm, [] {
     EXPECT_TRUE(fs::is_empty("recorder_none/fields"));
@@ -133,7 +135,7 @@ TEST(Recorder, MakesNoFieldFileWhenNoneIsAskedFor)
 TEST(Recorder, FieldsComeWhenTheyAreDue)
 {
   Recorded one("recorder_due");
-  Recorder recorder(one.simulation, {}, {});
+  Recorder recorder(one.simulation, one.scenario, {}, {});
   run_two_steps(one, recorder);
   base::on_root(one.comm, [] {
     EXPECT_TRUE(fs::exists("recorder_due/fields/step_000000.h5"));
@@ -147,7 +149,7 @@ TEST(Recorder, AFolderThatCannotBeMadeIsRefusedOnEveryRank)
   Recorded one("recorder_file/below");
   base::on_root(one.comm, [] { std::ofstream("recorder_file") << "in the way"; });
   try {
-    const Recorder recorder(one.simulation, {}, {});
+    const Recorder recorder(one.simulation, one.scenario, {}, {});
     ADD_FAILURE() << "made a folder below a file";
   } catch (const core::Failure& failure) {
     EXPECT_EQ(failure.code(), core::ExitCode::output);

@@ -65,7 +65,7 @@ TEST_F(ScenarioTest, HasTheDefaultsOfTheTable)
 {
   const Scenario scenario = read({});
   EXPECT_EQ(scenario.mesh.volumes, (std::vector<std::string>{"beam", "core"}));
-  EXPECT_EQ(scenario.time.analysis, Analysis::dynamic);
+  EXPECT_FALSE(scenario.time.is_static);
   EXPECT_EQ(scenario.time.step, 0.01);
   EXPECT_EQ(scenario.time.end, 0.0);
   EXPECT_FALSE(scenario.time.second_order || scenario.time.start_in_equilibrium);

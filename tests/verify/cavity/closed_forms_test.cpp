@@ -17,19 +17,19 @@ using core::Vec3;
 constexpr double E = 15000.0, nu = 0.3;
 const double G = E / (2.0 * (1.0 + nu)), K = E / (3.0 * (1.0 - 2.0 * nu));
 
-driver::Scenario statics(mesh::Mesh mesh, cavity::Model model)
+step::Scene statics(mesh::Mesh mesh, cavity::Model model)
 {
   return test::fluid_filled(std::move(mesh), {E, nu, 1000.0, 0.0, 0.0}, model);
 }
 
-void give_pressure(driver::Scenario& scenario, double p)
+void give_pressure(step::Scene& scenario, double p)
 {
   scenario.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::pressure;
   scenario.cavities.cavities[0].pressure.mean = p;
 }
 
 /// Prescribes u(X) on the outer surface.
-void prescribe(driver::Scenario& scenario, const std::function<Vec3(const Vec3&)>& u)
+void prescribe(step::Scene& scenario, const std::function<Vec3(const Vec3&)>& u)
 {
   tissue::PrescribedDisplacement tool{"outer", Vec3::Zero(), std::nullopt, {}};
   for (int node : mesh::group_nodes(scenario.mesh, "outer"))
@@ -39,7 +39,7 @@ void prescribe(driver::Scenario& scenario, const std::function<Vec3(const Vec3&)
 
 struct Solved
 {
-  explicit Solved(const driver::Scenario& scenario)
+  explicit Solved(const step::Scene& scenario)
       : simulation(scenario, base::Comm(MPI_COMM_WORLD)), result(simulation.initial_state())
   {
     if (!result.state) throw core::solver_error(result.why);
@@ -48,8 +48,8 @@ struct Solved
   const cavity::CavityReport& report() const { return result.report.cavities[0]; }
   double V0() const { return simulation.cavities()->wall(0).volume(); }
 
-  driver::Simulation simulation;
-  driver::StepResult result;
+  step::Simulation simulation;
+  step::StepResult result;
   fem::GlobalField u;
 };
 
@@ -65,7 +65,7 @@ TEST(LameShell, ComplianceConverges)
   const double a = 0.011, b = 0.025, p = 1.0;
   std::vector<double> error;
   for (int levels : {1, 2, 3}) {
-    driver::Scenario scenario =
+    step::Scene scenario =
         statics(test::shell(levels, 3 << (levels - 1), a, b), cavity::Model::linear);
     scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
     give_pressure(scenario, p);
@@ -86,7 +86,7 @@ TEST(LameTube, ComplianceWithCapsConverges)
   const double a = 0.01, b = 0.025, p = 1.0;
   std::vector<double> error;
   for (int n : {1, 2, 4}) {
-    driver::Scenario scenario =
+    step::Scene scenario =
         statics(test::tube(8 * n, n, 3 * n, a, b, 0.008), cavity::Model::linear);
     scenario.tissue.boundary.fixed = {{"ends", 4}, {"on_x", 2}, {"on_y", 1}};
     scenario.cavities.cavities[0].caps = true;
@@ -108,7 +108,7 @@ TEST(FluidFilledShell, PressureConverges)
   const double a = 0.011, b = 0.025, d = 1e-9;
   std::vector<double> error;
   for (int levels : {1, 2, 3}) {
-    driver::Scenario scenario =
+    step::Scene scenario =
         statics(test::shell(levels, 3 << (levels - 1), a, b), cavity::Model::linear);
     prescribe(scenario, [&](const Vec3& X) { return Vec3(-d / b * X); });
     const Solved solved(scenario);
@@ -141,7 +141,7 @@ TEST(LiquidSphere, PressureAndShapeConverge)
   const double k = 15.0 * (1.0 - nu) / (7.0 - 5.0 * nu);
   std::vector<double> of_p, of_k;
   for (int levels : {2, 3, 4}) {
-    driver::Scenario scenario =
+    step::Scene scenario =
         statics(test::shell(levels, 2 << (levels - 1), R, b), cavity::Model::linear);
     prescribe(scenario, [&](const Vec3& X) { return liquid_sphere(X, e, theta, R); });
     const Solved solved(scenario);
@@ -168,14 +168,14 @@ TEST(FollowerSphere, LimitPoint)
 {
   const double a = 0.01, b = 0.2;
   const auto scenario_of = [&] {
-    driver::Scenario scenario = statics(test::shell(2, 28, a, b), cavity::Model::follower);
+    step::Scene scenario = statics(test::shell(2, 28, a, b), cavity::Model::follower);
     prescribe(scenario, [](const Vec3&) { return Vec3(Vec3::Zero()); });
     scenario.tissue.allow_inversion = true;  // linear tissue, whatever the strain
     return scenario;
   };
   std::vector<double> p;
   for (double l : {1.2, 2.0, 2.3}) {
-    driver::Scenario scenario = scenario_of();
+    step::Scene scenario = scenario_of();
     const double V0 = cavity::Wall(scenario.mesh, "wall", false).volume();
     scenario.cavities.cavities[0].volume = l * l * l * V0;
     const Solved solved(scenario);
@@ -186,13 +186,13 @@ TEST(FollowerSphere, LimitPoint)
   }
   EXPECT_GT(p[1], p[2]);
   const double most = p[1];
-  driver::Scenario below = scenario_of();
+  step::Scene below = scenario_of();
   give_pressure(below, 0.9 * most);
   EXPECT_NO_THROW(Solved{below});
-  driver::Scenario above = scenario_of();
+  step::Scene above = scenario_of();
   give_pressure(above, 1.1 * most);
-  driver::Simulation simulation(above, base::Comm(MPI_COMM_WORLD));
-  const driver::StepResult lost = simulation.initial_state();
+  step::Simulation simulation(above, base::Comm(MPI_COMM_WORLD));
+  const step::StepResult lost = simulation.initial_state();
   ASSERT_FALSE(lost.state);
   EXPECT_NE(lost.why.find("negative curvature"), std::string::npos) << lost.why;
 }
@@ -201,7 +201,7 @@ TEST(FollowerSphere, LimitPoint)
 // it holds: the step is refused with that reason.
 TEST(FrozenTube, LosesItsRoot)
 {
-  driver::Scenario scenario =
+  step::Scene scenario =
       statics(test::tube(16, 2, 6, 0.01, 0.025, 0.008), cavity::Model::frozen);
   scenario.tissue.boundary.fixed = {{"ends", 4}, {"on_x", 2}, {"on_y", 1}};
   cavity::CavitySettings& one = scenario.cavities.cavities[0];
@@ -213,8 +213,8 @@ TEST(FrozenTube, LosesItsRoot)
   pump.flow = 0.3 * cavity::Wall(scenario.mesh, "wall", true).volume();
   scenario.cavities.edges = {pump};
   scenario.time.step = 1.0;
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  driver::StepResult result = simulation.initial_state();
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::StepResult result = simulation.initial_state();
   for (int n = 1; n <= 3; ++n) {
     ASSERT_TRUE(result.state) << result.why;
     EXPECT_NEAR(result.report.cavities[0].volume / (pump.flow / 0.3), 1.0 - 0.3 * (n - 1), 1e-11);

@@ -14,10 +14,10 @@ using cavity::Solver;
 using core::Vec3;
 
 /// A plate on the top, moved by two curves: down along z, sideways along x.
-driver::Scenario moved_plate(Model model, const std::string& down, const std::string& sideways)
+step::Scene moved_plate(Model model, const std::string& down, const std::string& sideways)
 {
   constexpr double open = std::numeric_limits<double>::quiet_NaN();
-  driver::Scenario scenario = test::cavity_scenario(5, 3, model, Solver::exact);
+  step::Scene scenario = test::cavity_scenario(5, 3, model, Solver::exact);
   scenario.time.step = 1.0;
   scenario.tissue.boundary.displacements = {
       {"z1", Vec3(open, 0.0, -0.006), core::parse_csv("time,factor\n" + down, "down")},
@@ -28,7 +28,7 @@ driver::Scenario moved_plate(Model model, const std::string& down, const std::st
 /// Work of the plate round the triangle (0,0), (1,0), (1,1) of its two motions, `n` steps a side.
 double loop_work(Model model, int n)
 {
-  driver::Scenario scenario = moved_plate(model, "0,0\n1,1\n2,1\n3,0\n", "0,0\n1,0\n2,1\n3,0\n");
+  step::Scene scenario = moved_plate(model, "0,0\n1,1\n2,1\n3,0\n", "0,0\n1,0\n2,1\n3,0\n");
   scenario.time.step = 1.0 / n;
   scenario.time.end = 3.0;
   const test::Run run = test::run(scenario);
@@ -67,7 +67,7 @@ TEST(CavityEnergy, ToolStiffnessIsSymmetric)
   for (Model model : {Model::follower, Model::frozen}) {
     const auto force = [&](double down, double sideways) {
       // Twice the same equilibrium: the second one starts from the first and polishes it.
-      driver::Scenario scenario = moved_plate(model, "0,0\n1,1\n2,1\n", "0,0\n1,1\n2,1\n");
+      step::Scene scenario = moved_plate(model, "0,0\n1,1\n2,1\n", "0,0\n1,1\n2,1\n");
       scenario.time.end = 2.0;
       scenario.tissue.boundary.displacements[0].value.z() *= down;
       scenario.tissue.boundary.displacements[1].value.x() *= sideways;

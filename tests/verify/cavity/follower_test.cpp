@@ -17,7 +17,7 @@ using test::solved;
 /// Everything dense and serial, written anew: K, the wall, and Newton's method on (u, p).
 struct Dense
 {
-  explicit Dense(const driver::Scenario& scenario)
+  explicit Dense(const step::Scene& scenario)
       : mesh(scenario.mesh),
         wall(mesh, "wall", false),
         K(test::dense_operator(mesh, scenario.tissue.materials[0], 1.0, 0.0)),
@@ -85,11 +85,11 @@ struct Dense
 // The whole program against a dense Newton method written for this test.
 TEST(Follower, AgreesWithDenseNewton)
 {
-  driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+  step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
   press(scenario, 0.006);  // 12 %
   const base::Comm comm(MPI_COMM_WORLD);
-  driver::Simulation simulation(scenario, comm);
-  const driver::StepResult result = solved(simulation);
+  step::Simulation simulation(scenario, comm);
+  const step::StepResult result = solved(simulation);
   Dense dense(scenario);
   dense.follow();
   const fem::GlobalField u = simulation.space().gather(result.state->tissue.u);
@@ -112,10 +112,10 @@ TEST(Corotational, OldFactorsGiveTheSame)
   for (bool dynamic : {false, true}) {
     std::vector<double> pressure;
     for (double lag : {0.0, 1e-9}) {
-      driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+      step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
       scenario.tissue.model = tissue::Model::corotational;
       scenario.tissue.lag_tolerance = lag;
-      if (dynamic) scenario.time.analysis = driver::Analysis::dynamic;
+      if (dynamic) scenario.time.is_static = false;
       scenario.time.step = 0.05;
       scenario.time.end = 0.2;
       press(scenario, 0.008);
@@ -135,10 +135,10 @@ TEST(FarFromTheOrigin, SamePressure)
 {
   std::vector<double> pressure;
   for (double away : {0.0, 3.0}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+    step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
     press(scenario, 0.005);
     for (Vec3& x : scenario.mesh.x) x += Vec3(away, -away, away);
-    const driver::StepReport report = solved(scenario);
+    const step::StepReport report = solved(scenario);
     pressure.push_back(report.cavities[0].pressure);
     EXPECT_LE(report.cavities[0].error, 1e-12);
   }

@@ -14,11 +14,11 @@ using test::solved;
 TEST(Gravity, WeightOfTheFluidArrives)
 {
   for (Model model : {Model::linear, Model::frozen, Model::follower}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, model, Solver::exact);
+    step::Scene scenario = test::cavity_scenario(5, 3, model, Solver::exact);
     scenario.tissue.boundary.fixed.clear();
     scenario.tissue.boundary.displacements = {{"z0", Vec3::Zero(), std::nullopt}};
     scenario.cavities.cavities[0].weight = Vec3(0.0, 0.0, -9810.0);
-    const driver::StepReport report = solved(scenario);
+    const step::StepReport report = solved(scenario);
     // Only a follower's weight is that of the deformed cavity; of constant volume they are the
     // same.
     const double weight = 9810.0 * 2.7e-5;

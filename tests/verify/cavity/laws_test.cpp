@@ -18,7 +18,7 @@ TEST(Laws, VolumeOfTheWallIsThatOfTheFluid)
   for (Model model : {Model::linear, Model::frozen, Model::follower})
     for (auto kind :
          {law::FluidLaw::Kind::bulk, law::FluidLaw::Kind::gas, law::FluidLaw::Kind::table}) {
-      driver::Scenario scenario = test::cavity_scenario(5, 3, model, Solver::exact);
+      step::Scene scenario = test::cavity_scenario(5, 3, model, Solver::exact);
       press(scenario, 0.004);
       cavity::CavitySettings& one = scenario.cavities.cavities[0];
       one.fluid.kind = kind;
@@ -26,8 +26,8 @@ TEST(Laws, VolumeOfTheWallIsThatOfTheFluid)
       one.fluid.ambient = 2e4;
       one.fluid.table =
           law::MonotoneSpline({-1e3, 0, 500, 1e3, 4e3}, {3e-5, 2.7e-5, 2.69e-5, 2.6e-5, 2e-5});
-      driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-      const driver::StepResult result = solved(simulation);
+      step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+      const step::StepResult result = solved(simulation);
       const cavity::CavityReport& report = result.report.cavities[0];
       const double V0 = simulation.cavities()->wall(0).volume();
       const double fluid = one.fluid.at(report.pressure, V0, 0.0).volume;
@@ -46,17 +46,17 @@ TEST(GivenPressure, IsTheInverseOfVolumeControl)
 {
   for (tissue::Model tissue : {tissue::Model::linear, tissue::Model::corotational})
     for (double part : {0.9, 1.001, 1.1}) {
-      driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+      step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
       scenario.tissue.model = tissue;
       scenario.tissue.lag_tolerance = 1e-8;
-      driver::Scenario volume = scenario, pressure = scenario, enclosed = scenario;
+      step::Scene volume = scenario, pressure = scenario, enclosed = scenario;
       volume.cavities.cavities[0].volume = part * 2.7e-5;
       const cavity::CavityReport held = solved(volume).cavities[0];
       pressure.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::pressure;
       pressure.cavities.cavities[0].pressure.mean = held.pressure;
       EXPECT_NEAR(solved(pressure).cavities[0].volume, part * 2.7e-5, 1e-7 * 2.7e-5);
       enclosed.cavities.cavities[0].initial_pressure = held.pressure;
-      enclosed.time.analysis = driver::Analysis::dynamic;
+      enclosed.time.is_static = false;
       enclosed.time.start_in_equilibrium = true;
       enclosed.time.step = 0.02;
       enclosed.time.end = 0.1;

@@ -19,9 +19,9 @@ TEST(Models, FrozenSolversAgreeAndLinearIsOff)
 {
   cavity::CavityReport exact;
   for (Solver solver : {Solver::exact, Solver::newton, Solver::proportional}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, Model::frozen, solver);
+    step::Scene scenario = test::cavity_scenario(5, 3, Model::frozen, solver);
     press(scenario, 0.004);
-    const driver::StepReport report = solved(scenario);
+    const step::StepReport report = solved(scenario);
     const cavity::CavityReport& one = report.cavities[0];
     EXPECT_LE(one.error, 1e-12);
     if (solver == Solver::exact) {
@@ -38,9 +38,9 @@ TEST(Models, FrozenSolversAgreeAndLinearIsOff)
   }
   std::vector<double> error;
   for (double depth : {0.002, 0.001}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, Model::linear);
+    step::Scene scenario = test::cavity_scenario(5, 3, Model::linear);
     press(scenario, depth);
-    const driver::StepReport report = solved(scenario);
+    const step::StepReport report = solved(scenario);
     EXPECT_EQ(report.linearisations, 1);
     error.push_back(report.cavities[0].error);
   }
@@ -52,7 +52,7 @@ TEST(WithNeedle, ModelsAgree)
 {
   std::vector<double> pressure;
   for (Model model : {Model::linear, Model::frozen, Model::follower}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, model, Solver::exact);
+    step::Scene scenario = test::cavity_scenario(5, 3, model, Solver::exact);
     add_needle(scenario, 0.0053);
     scenario.insertion.friction = test::same({0.5, 0.4, 0.0});
     scenario.time.end = 0.5;

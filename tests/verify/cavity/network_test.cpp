@@ -14,18 +14,18 @@ using test::press;
 using test::solved;
 
 /// dV/dp of a cavity at rest [m³/Pa].
-double compliance(driver::Scenario scenario)
+double compliance(step::Scene scenario)
 {
   cavity::CavitySettings& one = scenario.cavities.cavities[0];
   scenario.tissue.boundary.displacements.clear();
   scenario.time.end = 0.0;
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.time.is_static = true;
   scenario.cavities.edges.clear();
   for (cavity::CavitySettings& any : scenario.cavities.cavities) any.initial_pressure.reset();
   one.fluid.kind = law::FluidLaw::Kind::pressure;
   one.pressure.mean = 1e-3;
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const driver::StepReport report = solved(simulation).report;
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::StepReport report = solved(simulation).report;
   return (report.cavities[0].volume - simulation.cavities()->wall(0).volume()) / 1e-3;
 }
 
@@ -35,7 +35,7 @@ TEST(Network, LeakDecays)
 {
   std::vector<double> error;
   for (int steps : {20, 40}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, Model::linear);
+    step::Scene scenario = test::cavity_scenario(5, 3, Model::linear);
     const double C = compliance(scenario);
     const double tau = 0.5;
     scenario.cavities.cavities[0].initial_pressure = 2000.0;
@@ -60,9 +60,9 @@ TEST(Network, LeakDecays)
 }
 
 /// Two equal cavities far from each other.
-driver::Scenario two_cavities(Model model)
+step::Scene two_cavities(Model model)
 {
-  driver::Scenario scenario = test::cavity_scenario(5, 1, model, Solver::exact);
+  step::Scene scenario = test::cavity_scenario(5, 1, model, Solver::exact);
   test::BlockShape shape{11, 5, 5, Vec3(0.11, 0.05, 0.05)};
   const auto in = [](const Vec3& x, double at) {
     return (x - Vec3(at, 0.025, 0.025)).cwiseAbs().maxCoeff() < 0.0051;
@@ -84,7 +84,7 @@ TEST(Network, AmountOfGasIsKept)
 {
   for (const auto kind : {law::FluidLaw::Kind::gas, law::FluidLaw::Kind::bulk})
     for (Model model : {Model::linear, Model::frozen, Model::follower}) {
-      driver::Scenario scenario = two_cavities(model);
+      step::Scene scenario = two_cavities(model);
       for (cavity::CavitySettings& one : scenario.cavities.cavities) {
         one.fluid.kind = kind;
         one.fluid.ambient = one.fluid.bulk_modulus = 2e4;
@@ -127,10 +127,10 @@ TEST(Network, AmountOfGasIsKept)
 TEST(Network, TwoCavitiesMeet)
 {
   for (Model model : {Model::linear, Model::frozen, Model::follower}) {
-    driver::Scenario scenario = two_cavities(model);
+    step::Scene scenario = two_cavities(model);
     scenario.cavities.cavities[0].initial_pressure = 100.0;
     scenario.cavities.cavities[1].initial_pressure = -100.0;
-    driver::Scenario alone = scenario;
+    step::Scene alone = scenario;
     const double C = compliance(alone);
     cavity::EdgeSettings tube;
     tube.name = "tube";
@@ -158,7 +158,7 @@ TEST(Network, TwoCavitiesMeet)
 TEST(Network, InjectionIsKept)
 {
   for (Model model : {Model::frozen, Model::follower}) {
-    driver::Scenario scenario = test::cavity_scenario(5, 3, model, Solver::exact);
+    step::Scene scenario = test::cavity_scenario(5, 3, model, Solver::exact);
     cavity::EdgeSettings pump;
     pump.name = "pump";
     pump.to = 0;
@@ -179,7 +179,7 @@ TEST(Network, InjectionIsKept)
 // A valve lets fluid out and none in; gas and valve are laws that the dense problem settles.
 TEST(Network, ValveAndGas)
 {
-  driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+  step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
   scenario.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::gas;
   scenario.cavities.cavities[0].fluid.ambient = 1e4;
   cavity::EdgeSettings valve;

@@ -15,7 +15,7 @@ using test::add_needle;
 // after withdrawal the hole goes on leaking with its own resistance.
 TEST(WallPuncture, OpensTheEdge)
 {
-  driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+  step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
   add_needle(scenario, 0.0253);
   scenario.time.end = 2.4;
   needle::BaseMotion& motion = scenario.needles[0].motion;
@@ -64,7 +64,7 @@ TEST(WallPuncture, OpensTheEdge)
 // A needle that is through both walls at the start has opened its edge.
 TEST(WallPuncture, NeedleThroughTheCavityAtTheStart)
 {
-  driver::Scenario scenario = test::cavity_scenario(5, 3, Model::follower);
+  step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
   add_needle(scenario, 0.0253);
   scenario.needles[0].motion.inserted = 0.045;
   scenario.needles[0].motion.velocity = 0.0;
@@ -87,7 +87,7 @@ TEST(WallPuncture, NeedleThroughTheCavityAtTheStart)
 // Two cavities in a row: an edge between them opens when the needle has come into the second one.
 TEST(WallPuncture, ASeptumHoldsUntilItIsPierced)
 {
-  driver::Scenario scenario = test::cavity_scenario(5, 1, Model::linear);
+  step::Scene scenario = test::cavity_scenario(5, 1, Model::linear);
   test::BlockShape shape{7, 5, 5, Vec3(0.07, 0.05, 0.05)};
   const auto in = [](const Vec3& x, double at) {
     return (x - Vec3(at, 0.025, 0.025)).cwiseAbs().maxCoeff() < 0.0051;

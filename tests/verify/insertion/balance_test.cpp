@@ -14,15 +14,15 @@ using test::plain;
 TEST(Balance, ActionEqualsReaction)
 {
   for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
-    driver::Scenario scenario = test::needle_scenario(distorted);
+    step::Scene scenario = test::needle_scenario(distorted);
     scenario.needles[0].model = model;
     const base::Comm comm(MPI_COMM_WORLD);
-    driver::Simulation simulation(scenario, comm);
-    driver::State state = *simulation.initial_state().state;
+    step::Simulation simulation(scenario, comm);
+    step::State state = *simulation.initial_state().state;
     double worst = 0.0, largest = 0.0;
     for (int n = 1; n <= 60; ++n) {
       const core::TimeStep now{0.02 * n, 0.02, false};
-      const driver::StepResult result = simulation.step(state, now);
+      const step::StepResult result = simulation.step(state, now);
       ASSERT_TRUE(result.state) << result.why;
       const fem::GlobalField unbalanced = simulation.space().gather(
           simulation.tissue().residual(state.tissue, result.state->tissue.u, now));
@@ -42,15 +42,15 @@ TEST(Balance, ActionEqualsReaction)
 TEST(Balance, ActionEqualsReactionInEquilibrium)
 {
   for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
-    driver::Scenario scenario = test::needle_scenario(distorted);
+    step::Scene scenario = test::needle_scenario(distorted);
     scenario.needles[0].model = model;
-    scenario.time.analysis = driver::Analysis::equilibrium;
+    scenario.time.is_static = true;
     scenario.tissue.model = tissue::Model::corotational;
     scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);
     scenario.needles[0].motion.inserted = 0.03;
     const base::Comm comm(MPI_COMM_WORLD);
-    driver::Simulation simulation(scenario, comm);
-    const driver::StepResult start = simulation.initial_state();
+    step::Simulation simulation(scenario, comm);
+    const step::StepResult start = simulation.initial_state();
     ASSERT_TRUE(start.state) << start.why;
     const fem::GlobalField unbalanced = simulation.space().gather(simulation.tissue().residual(
         simulation.tissue().at_rest(), start.state->tissue.u, {0, 1, true}));
@@ -67,8 +67,8 @@ TEST(Balance, ActionEqualsReactionInEquilibrium)
 // takes hold of are the plate's: what the holder pushes with is all that the plate feels.
 TEST(Balance, APlateFeelsWhatTheNeedleDoesOnItsNodes)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  step::Scene scenario = test::needle_scenario(plain);
+  scenario.time.is_static = true;
   scenario.tissue.boundary.fixed.clear();
   scenario.tissue.boundary.displacements = {{"z0", Vec3::Zero(), std::nullopt}};
   scenario.needles[0].motion.entry = Vec3(0, 0.0173, 0.0031);
@@ -86,18 +86,18 @@ TEST(Balance, APlateFeelsWhatTheNeedleDoesOnItsNodes)
 // Drawn aside where a support holds the tissue: no force closes that gap, and the step says where.
 TEST(Balance, AGapThatASupportHoldsOpenIsRefused)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  step::Scene scenario = test::needle_scenario(plain);
+  scenario.time.is_static = true;
   scenario.tissue.boundary.fixed = {{"z0", 7}, {"x0", 7}};
   scenario.needles[0].motion.entry = Vec3(0, 0.02, 0.02);
   scenario.needles[0].motion.inserted = 0.03;
   scenario.needles[0].motion.trajectory =
       core::parse_csv("time,x,y,z\n0,-0.05,0.02,0.02\n1,-0.05,0.021,0.02\n", "aside.csv");
   scenario.time.end = 0.04;
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const driver::StepResult start = simulation.initial_state();
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::StepResult start = simulation.initial_state();
   ASSERT_TRUE(start.state) << start.why;
-  const driver::StepResult aside = simulation.step(*start.state, {0.01, 0.01, true});
+  const step::StepResult aside = simulation.step(*start.state, {0.01, 0.01, true});
   ASSERT_FALSE(aside.state);
   EXPECT_NE(aside.why.find("needle 'needle' where the undeformed tissue has (0, 0.02, 0.02) m"),
             std::string::npos)
@@ -110,8 +110,8 @@ TEST(Balance, AHeldFaceRubsLikeAnyOther)
 {
   for (needle::Model model : {needle::Model::rigid, needle::Model::beam})
     for (bool withdraws : {false, true}) {
-      driver::Scenario scenario = test::needle_scenario(plain);
-      scenario.time.analysis = driver::Analysis::equilibrium;
+      step::Scene scenario = test::needle_scenario(plain);
+      scenario.time.is_static = true;
       scenario.tissue.boundary.fixed = {{"x0", 7}};
       scenario.tissue.materials[0].young = 1e7;
       scenario.insertion.friction = test::same({20.0, 20.0, 0.0});
@@ -124,7 +124,7 @@ TEST(Balance, AHeldFaceRubsLikeAnyOther)
       scenario.time.step = 0.1;
       scenario.time.end = withdraws ? 2.0 : 1.3;
       const test::Run run = test::run(scenario);
-      const driver::NeedleReport& last = run.reports.back().needles[0];
+      const step::NeedleReport& last = run.reports.back().needles[0];
       const double friction = (withdraws ? -20.0 : 20.0) * last.depth;
       EXPECT_GT(last.depth, 0.015);
       EXPECT_NEAR(last.base.force.x(), friction, 1e-3 * std::abs(friction));

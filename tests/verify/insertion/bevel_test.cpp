@@ -14,7 +14,7 @@ using test::scene;
 /// Lateral place of the tip, along the bevel's axis, after an insertion.
 double deflection(double bevel, double roll, needle::Model model)
 {
-  driver::Scenario scenario = test::needle_scenario({8, 5, 5, Vec3(0.06, 0.04, 0.04), 0.0});
+  step::Scene scenario = test::needle_scenario({8, 5, 5, Vec3(0.06, 0.04, 0.04), 0.0});
   needle::NeedleSettings& needle = scenario.needles[0];
   needle.model = model;
   needle.section = {0.00015, 0.0, 5e10, 0.3};
@@ -47,14 +47,14 @@ TEST(Bevel, CutsWithTheSameWorkAtAnyStep)
 {
   double work[2];
   for (int k : {0, 1}) {
-    driver::Scenario scenario = scene(0.0, 0.05);
+    step::Scene scenario = scene(0.0, 0.05);
     needle::NeedleSettings& needle = scenario.needles[0];
     needle.model = needle::Model::beam;
     needle.section = {0.0003, 0.0, 7e10, 0.3};
     needle.bevel = 1.5;
     needle.motion.depth = 0.03;
     needle.motion.hold = 1.0;
-    scenario.time.analysis = driver::Analysis::equilibrium;
+    scenario.time.is_static = true;
     scenario.time.step = k == 0 ? 0.05 : 0.025;
     scenario.time.end = 2.0;
     const test::Run run = test::run(scenario);

@@ -14,7 +14,7 @@ using test::scene;
 // back in through the open channel, and with both again from its end on.
 TEST(Cutting, ForceActsWhileTheTipAdvancesAndNotInTheOpenChannel)
 {
-  driver::Scenario scenario = scene(0.0, 0.15);
+  step::Scene scenario = scene(0.0, 0.15);
   scenario.needles[0].motion.trajectory = core::Csv{"in-out-in",
                                                     {"time", "x", "y", "z"},
                                                     {{0, -0.08, 0.0173, 0.0231},
@@ -59,8 +59,8 @@ TEST(Cutting, ForceActsWhileTheTipAdvancesAndNotInTheOpenChannel)
 // the force is in proportion to the travel.
 TEST(Cutting, TheChannelGrowsOnlyByTheAdvance)
 {
-  driver::Scenario scenario = scene(0.0, std::numeric_limits<double>::infinity());
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  step::Scene scenario = scene(0.0, std::numeric_limits<double>::infinity());
+  scenario.time.is_static = true;
   scenario.insertion.friction = test::same({0.0, 0.0, 0.0});
   scenario.needles[0].motion.inserted = 0.02;
   scenario.time.end = 0.2;

@@ -26,7 +26,7 @@ TEST(Friction, IsTauTimesDepthWheneverEverythingSlips)
                                                           {Placement::crossings, 0.005, 0.0},
                                                           {Placement::spacing, 0.0047, 0.3},
                                                           {Placement::spacing, 0.012, 0.3}}) {
-      driver::Scenario scenario = test::needle_scenario(shape);
+      step::Scene scenario = test::needle_scenario(shape);
       scenario.insertion.placement = placement;
       // One step advances 0.5 mm; τ ℓ W_kk is about 1 N/m * 0.01 m * 3e-3 m/N = 3e-5 m.
       scenario.needles[0].motion.velocity = 0.025;
@@ -46,7 +46,7 @@ TEST(Friction, IsTauTimesDepthWheneverEverythingSlips)
 
 TEST(Friction, OnlyDissipates)
 {
-  driver::Scenario scenario = test::needle_scenario(distorted);
+  step::Scene scenario = test::needle_scenario(distorted);
   scenario.tissue.model = tissue::Model::corotational;
   scenario.needles[0].motion.hold = 0.2;
   scenario.needles[0].motion.withdraw_velocity = 0.03;
@@ -65,7 +65,7 @@ TEST(Friction, OnlyDissipates)
 // slowly, the needle breaks away at τ_s · depth and goes on at τ_d · depth.
 TEST(Friction, BreaksAwayAtTheStaticLimit)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
+  step::Scene scenario = test::needle_scenario(plain);
   needle::BaseMotion& motion = scenario.needles[0].motion;
   motion.inserted = motion.depth = 0.04;
   motion.withdraw_velocity = 0.001;
@@ -90,7 +90,7 @@ TEST(Friction, ViscousForceFollowsVelocityAndRelaxes)
 {
   double per_velocity = 0.0;
   for (double velocity : {0.002, 0.004}) {
-    driver::Scenario scenario = test::needle_scenario(distorted);
+    step::Scene scenario = test::needle_scenario(distorted);
     needle::BaseMotion& motion = scenario.needles[0].motion;
     motion.inserted = 0.03;
     motion.velocity = velocity;
@@ -119,10 +119,10 @@ TEST(Friction, ViscousForceFollowsVelocityAndRelaxes)
 // do not change while it is iterated.
 TEST(Friction, MayBeStaticOnly)
 {
-  for (driver::Analysis analysis : {driver::Analysis::dynamic, driver::Analysis::equilibrium}) {
-    driver::Scenario scenario = test::needle_scenario(plain);
+  for (bool is_static : {false, true}) {
+    step::Scene scenario = test::needle_scenario(plain);
     scenario.needles[0].model = needle::Model::beam;
-    scenario.time.analysis = analysis;
+    scenario.time.is_static = is_static;
     scenario.time.newton_max = 20;
     scenario.needles[0].motion.hold = 0.2;
     scenario.needles[0].motion.withdraw_velocity = 0.02;
@@ -139,7 +139,7 @@ TEST(Friction, MayBeStaticOnly)
 
 TEST(Friction, MayDifferOnWithdrawal)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
+  step::Scene scenario = test::needle_scenario(plain);
   scenario.insertion.friction = {{{2.0, 2.0, 0.0}, {0.5, 0.5, 0.0}}};
   scenario.needles[0].motion.withdraw_velocity = 0.02;
   scenario.time.end = 3.0;
@@ -158,7 +158,7 @@ TEST(Friction, EtaIsThatPartOfSticking)
 {
   // One point, one step: λ_η = η λ_stick with the lateral forces held; they shift it a little.
   const auto axial = [](double eta) {
-    driver::Scenario scenario = test::needle_scenario(plain);
+    step::Scene scenario = test::needle_scenario(plain);
     scenario.needles[0].motion.inserted = 0.004;
     scenario.insertion.placement = {Placement::spacing, 0.005, 0.3};
     scenario.insertion.eta = eta;

@@ -12,7 +12,7 @@ using insertion::Phase;
 using test::layered;
 
 /// The channel waits at x = 3 cm until the force reaches `threshold`, and then goes on.
-void expect_stop_at_border(const driver::Scenario& scenario, double threshold)
+void expect_stop_at_border(const step::Scene& scenario, double threshold)
 {
   const test::Run run = test::run(scenario);
   int waiting = 0;
@@ -35,7 +35,7 @@ void expect_stop_at_border(const driver::Scenario& scenario, double threshold)
 
 TEST(Layers, EachHasItsOwnThresholdCuttingForceAndFriction)
 {
-  driver::Scenario scenario = layered();
+  step::Scene scenario = layered();
   scenario.insertion.puncture.volume = {0.1, 1.0};
   expect_stop_at_border(scenario, 1.0);
   const test::Run run = test::run(scenario);
@@ -47,7 +47,7 @@ TEST(Layers, EachHasItsOwnThresholdCuttingForceAndFriction)
 
 TEST(Layers, ATaggedSurfaceInsideATissueIsAMembrane)
 {
-  driver::Scenario scenario = layered();
+  step::Scene scenario = layered();
   mesh::Mesh& mesh = scenario.mesh;
   mesh::SurfaceGroup capsule;
   capsule.name = "capsule";

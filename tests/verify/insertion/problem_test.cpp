@@ -16,7 +16,7 @@ using test::distorted;
 // W is symmetric, positive semidefinite and the dense H A⁻¹ Hᵀ.
 TEST(ConstraintProblem, WIsTheDenseProduct)
 {
-  driver::Scenario scenario = test::needle_scenario(distorted);
+  step::Scene scenario = test::needle_scenario(distorted);
   scenario.needles[0].model = needle::Model::beam;
   tissue::TissueSettings settings = scenario.tissue;
   test::Body body(distorted, settings);

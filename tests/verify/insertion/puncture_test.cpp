@@ -17,7 +17,7 @@ using test::scene;
 // to the cutting force. Held for long below f_p nothing happens.
 TEST(Puncture, HappensAtTheThresholdAndNeverBelow)
 {
-  driver::Scenario scenario = scene(0.3, 0.1);
+  step::Scene scenario = scene(0.3, 0.1);
   scenario.time.end = 1.0;
   const test::Run run = test::run(scenario);
   double peak = 0.0;
@@ -47,7 +47,7 @@ TEST(Puncture, HappensAtTheThresholdAndNeverBelow)
 
 TEST(Puncture, TheTipLeavesASurfaceItDidNotPunctureWithoutPulling)
 {
-  driver::Scenario scenario = scene(10.0, 0.0);
+  step::Scene scenario = scene(10.0, 0.0);
   needle::BaseMotion& motion = scenario.needles[0].motion;
   motion.depth = 0.004;
   motion.withdraw_velocity = 0.02;
@@ -68,11 +68,11 @@ TEST(Puncture, TheTipLeavesASurfaceItDidNotPunctureWithoutPulling)
 double indentation(int cells, double radius, double poisson)
 {
   const double edge = 0.1;
-  driver::Scenario scenario =
+  step::Scene scenario =
       test::needle_scenario({cells, cells, cells, Vec3(edge, edge, edge), 0.0});
   scenario.tissue.materials = {{5000.0, poisson, 1000.0, 0.0, 0.0}};
   scenario.tissue.boundary.fixed = {{"x1", 7}};
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.time.is_static = true;
   scenario.time.end = 0.04;
   scenario.needles[0].motion.entry = Vec3(0, 0.0503, 0.0497);
   scenario.insertion.friction = test::same({0.0, 0.0, 0.0});
@@ -104,7 +104,7 @@ TEST(Puncture, DoesNotDependOnHowTheBodyLies)
   Vec3 force = Vec3::Zero();
   double depth = 0.0;
   for (int turn = 0; turn < 4; ++turn) {
-    driver::Scenario scenario = layered();
+    step::Scene scenario = layered();
     scenario.insertion.puncture.volume = {0.1, 0.4};
     scenario.insertion.tip.radius = 0.012;
     needle::BaseMotion& motion = scenario.needles[0].motion;
@@ -134,7 +134,7 @@ TEST(Puncture, DoesNotDependOnHowTheBodyLies)
 
 TEST(Puncture, IsAskedForAgainAtAnotherPlace)
 {
-  driver::Scenario scenario = scene(0.2, 0.05);
+  step::Scene scenario = scene(0.2, 0.05);
   scenario.needles[0].motion.trajectory = core::parse_csv(
       "time,x,y,z\n0,-0.08,0.0131,0.0231\n1,-0.05,0.0131,0.0231\n2,-0.09,0.0131,0.0231\n"
       "2.5,-0.09,0.0271,0.0231\n4,-0.05,0.0271,0.0231\n5,-0.09,0.0271,0.0231\n",
@@ -151,9 +151,9 @@ TEST(Puncture, IsAskedForAgainAtAnotherPlace)
 // friction, and presses on nothing once it is beside the body.
 TEST(Surface, ATipDrawnAsideSlidesAndFallsOff)
 {
-  driver::Scenario scenario = scene(10.0, 0.0);
+  step::Scene scenario = scene(10.0, 0.0);
   scenario.insertion.tip.friction = 0.3;
-  scenario.output.energy = true;
+  scenario.energy = true;
   scenario.needles[0].motion.entry = Vec3(0, 0.02, 0.0231);
   scenario.needles[0].motion.trajectory = core::parse_csv(
       "time,x,y,z\n0,-0.08,0.02,0.0231\n0.2,-0.078,0.02,0.0231\n2.2,-0.078,0.05,0.0231\n",
@@ -173,7 +173,7 @@ TEST(Surface, ATipDrawnAsideSlidesAndFallsOff)
     }
   }
   EXPECT_GT(sliding, 30);
-  const driver::EnergyAccount& e = run.states.back().energy;
+  const step::EnergyAccount& e = run.states.back().energy;
   EXPECT_GT(e.friction, 0.2 * e.supplied);
   EXPECT_LT(std::abs(e.rest()), 0.15 * e.supplied);
 }

@@ -14,7 +14,7 @@ using test::plain;
 TEST(Withdrawal, LeavesNoPointAndReturnsTheTissue)
 {
   for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
-    driver::Scenario scenario = test::needle_scenario(distorted);
+    step::Scene scenario = test::needle_scenario(distorted);
     scenario.needles[0].model = model;
     scenario.tissue.model = tissue::Model::corotational;
     scenario.needles[0].motion.hold = 0.1;
@@ -38,7 +38,7 @@ TEST(Withdrawal, LeavesNoPointAndReturnsTheTissue)
 
 TEST(Reinsertion, GoesBackInThroughTheOpenChannel)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
+  step::Scene scenario = test::needle_scenario(plain);
   scenario.needles[0].motion.trajectory = core::parse_csv(
       "time,x,y,z\n0,-0.08,0.0173,0.0231\n1,-0.05,0.0173,0.0231\n2,-0.09,0.0173,0.0231\n"
       "3,-0.05,0.0173,0.0231\n",
@@ -59,7 +59,7 @@ TEST(Reinsertion, GoesBackInThroughTheOpenChannel)
 
 TEST(Reinsertion, TenCyclesDoNotDrift)
 {
-  driver::Scenario scenario = test::needle_scenario(distorted);
+  step::Scene scenario = test::needle_scenario(distorted);
   std::string rows = "time,x,y,z\n0,-0.08,0.0173,0.0231\n";
   for (int cycle = 0; cycle < 10; ++cycle) {
     rows += std::to_string(2 * cycle + 1) + ",-0.05,0.0173,0.0231\n";
@@ -82,7 +82,7 @@ TEST(Reinsertion, TenCyclesDoNotDrift)
 // Somewhere else it cuts a channel of its own, with identities of its own.
 TEST(Reinsertion, CutsANewChannelBesideTheOldOne)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
+  step::Scene scenario = test::needle_scenario(plain);
   scenario.needles[0].motion.trajectory = core::parse_csv(
       "time,x,y,z\n0,-0.08,0.0131,0.0231\n1,-0.05,0.0131,0.0231\n2,-0.09,0.0131,0.0231\n"
       "2.5,-0.09,0.0271,0.0231\n4,-0.05,0.0271,0.0231\n",

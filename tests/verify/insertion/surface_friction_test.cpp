@@ -18,9 +18,9 @@ constexpr double stride = 1e-4;  ///< of the drawing [m]
 /// equilibrium after the other.
 test::Run drawn(const Vec3& aside)
 {
-  driver::Scenario scenario = test::needle_scenario({6, 6, 6, Vec3(0.06, 0.06, 0.06), 0.0});
+  step::Scene scenario = test::needle_scenario({6, 6, 6, Vec3(0.06, 0.06, 0.06), 0.0});
   scenario.tissue.boundary.fixed = {{"x1", 7}};
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.time.is_static = true;
   scenario.time.step = 1.0;
   scenario.time.end = presses + draws;
   scenario.insertion.puncture.volume = {1e3};

@@ -141,7 +141,7 @@ TEST(Damping, OfASpinIsNone)
 /// A stretched block let go but for a fifth, damped: displacements after 0.03 s.
 core::VecX let_go(Model model, Tangent tangent, double step, int linearisations)
 {
-  driver::Scenario scenario = test::needle_scenario({3, 2, 2, Vec3(0.06, 0.03, 0.03), 0.1});
+  step::Scene scenario = test::needle_scenario({3, 2, 2, Vec3(0.06, 0.03, 0.03), 0.1});
   scenario.needles.clear();
   scenario.tissue.model = model;
   scenario.tissue.tangent = tangent;

@@ -15,9 +15,9 @@ using tissue::Dilatation;
 
 constexpr double a = 0.011, b = 0.025, E = 15000.0;
 
-driver::Scenario sphere(mesh::Mesh mesh, double poisson, cavity::Model model)
+step::Scene sphere(mesh::Mesh mesh, double poisson, cavity::Model model)
 {
-  driver::Scenario scenario =
+  step::Scene scenario =
       test::fluid_filled(std::move(mesh), {E, poisson, 1000.0, 0.0, 0.0}, model);
   scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
   return scenario;
@@ -35,12 +35,12 @@ double lame_error(const Kind& kind, int levels, int layers, double poisson)
 {
   mesh::Mesh mesh = test::shell(levels, layers, a, b);
   if (kind.quadratic) test::make_round(mesh);
-  driver::Scenario scenario = sphere(std::move(mesh), poisson, cavity::Model::linear);
+  step::Scene scenario = sphere(std::move(mesh), poisson, cavity::Model::linear);
   scenario.tissue.dilatation = kind.dilatation;
   scenario.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::pressure;
   scenario.cavities.cavities[0].pressure.mean = 1.0;
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const driver::StepResult result = simulation.initial_state();
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::StepResult result = simulation.initial_state();
   if (!result.state) throw core::solver_error(result.why);
   const double V0 = simulation.cavities()->wall(0).volume();
   const double u =
@@ -87,24 +87,24 @@ double neo_hookean_pressure(double l, double ratio)
   return mu * (f(outer) - f(l));
 }
 
-double pressure_at(const driver::Scenario& scene, double l)
+double pressure_at(const step::Scene& scene, double l)
 {
-  driver::Scenario scenario = scene;
+  step::Scene scenario = scene;
   scenario.cavities.cavities[0].volume =
       l * l * l * cavity::Wall(scenario.mesh, "wall", false).volume();
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const driver::StepResult result = simulation.initial_state();
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::StepResult result = simulation.initial_state();
   if (!result.state) throw core::solver_error(result.why);
   std::printf("  %d linearisations, %lld factors\n", result.report.linearisations,
               static_cast<long long>(simulation.ledger().factorisations));
   return result.report.cavities[0].pressure;
 }
 
-driver::Scenario neo_hookean_sphere(int levels, int layers, double outer)
+step::Scene neo_hookean_sphere(int levels, int layers, double outer)
 {
   mesh::Mesh mesh = test::shell(levels, layers, a, outer);
   test::make_round(mesh);
-  driver::Scenario scenario = sphere(std::move(mesh), 0.49999, cavity::Model::follower);
+  step::Scene scenario = sphere(std::move(mesh), 0.49999, cavity::Model::follower);
   scenario.tissue.model = tissue::Model::neo_hookean;
   scenario.tissue.dilatation = Dilatation::nodal;
   return scenario;
@@ -112,7 +112,7 @@ driver::Scenario neo_hookean_sphere(int levels, int layers, double outer)
 
 TEST(NeoHookeanSphere, PressureOfThirtyPercentOfVolume)
 {
-  const driver::Scenario scenario = neo_hookean_sphere(2, 4, b);
+  const step::Scene scenario = neo_hookean_sphere(2, 4, b);
   for (double ratio : {0.7, 1.3}) {
     const double l = std::cbrt(ratio);
     const double p = pressure_at(scenario, l), exact = neo_hookean_pressure(l, b / a);
@@ -126,7 +126,7 @@ TEST(NeoHookeanSphere, PressureOfThirtyPercentOfVolume)
 TEST(NeoHookeanSphere, ThinShellPassesItsLimitPoint)
 {
   const double ratio = 1.1, limit = std::pow(7.0, 1.0 / 6.0);
-  const driver::Scenario scenario = neo_hookean_sphere(2, 1, ratio * a);
+  const step::Scene scenario = neo_hookean_sphere(2, 1, ratio * a);
   std::vector<double> p;
   for (double l : {0.9 * limit, limit, 1.15 * limit}) {
     p.push_back(pressure_at(scenario, l));

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "driver/error_estimate.hpp"
-#include "driver/stress_fields.hpp"
+#include "post/error_estimate.hpp"
 #include "support/body.hpp"
 #include "support/cavity.hpp"
 #include "support/shell.hpp"
@@ -46,10 +45,10 @@ TEST(Stress, OfAStretchAndARotation)
       EXPECT_LT((field.stress.segment<6>(6 * t) - expected).norm(), 1e-11 * expected.norm());
       EXPECT_NEAR(field.energy[t], 0.5 * (lambda + 2 * mu) * stretch * stretch, 1e-10 * E);
     }
-    const core::VecX means = driver::nodal_means(body.mesh, field);
+    const core::VecX means = post::nodal_means(body.mesh, field);
     EXPECT_LT((means.head<6>() - expected).norm(), 1e-11 * expected.norm());
     EXPECT_EQ(body.ledger.stress_evaluations, 1);
-    EXPECT_LT(driver::recovery_errors(body.mesh, settings.materials, field).sum(),
+    EXPECT_LT(post::recovery_errors(body.mesh, settings.materials, field).sum(),
               1e-20 * field.energy.sum());  // nothing to be estimated
   }
 }
@@ -58,14 +57,14 @@ TEST(Stress, MisesAndPrincipalValues)
 {
   Six s;
   s << 0, 0, 0, 50.0, 0, 0;  // pure shear
-  EXPECT_NEAR(driver::von_mises(s), 50.0 * std::sqrt(3.0), 1e-12);
-  EXPECT_LT((driver::principal_values(s) - Vec3(50, 0, -50)).norm(), 1e-12);
+  EXPECT_NEAR(post::von_mises(s), 50.0 * std::sqrt(3.0), 1e-12);
+  EXPECT_LT((post::principal_values(s) - Vec3(50, 0, -50)).norm(), 1e-12);
   s << 7, 7, 7, 0, 0, 0;
-  EXPECT_NEAR(driver::von_mises(s), 0.0, 1e-12);
+  EXPECT_NEAR(post::von_mises(s), 0.0, 1e-12);
   s << 3, -1, 2, 0.5, -0.7, 1.1;  // invariants
-  const Vec3 p = driver::principal_values(s);
+  const Vec3 p = post::principal_values(s);
   EXPECT_NEAR(p.sum(), 4.0, 1e-12);
-  EXPECT_NEAR(driver::von_mises(s),
+  EXPECT_NEAR(post::von_mises(s),
               std::sqrt(0.5 * (std::pow(p[0] - p[1], 2) + std::pow(p[1] - p[2], 2) +
                                std::pow(p[2] - p[0], 2))),
               1e-12);
@@ -75,7 +74,7 @@ TEST(Stress, MisesAndPrincipalValues)
 void expect_sizes_lead_to_target(const mesh::Mesh& mesh, const core::VecX& errors)
 {
   const double energy = 4.0 * errors.sum(), target = 0.3;  // 50 % now
-  const core::VecX sizes = driver::wanted_sizes(mesh, errors, energy, target);
+  const core::VecX sizes = post::wanted_sizes(mesh, errors, energy, target);
   double predicted = 0.0, ends = 0.0;
   for (int t = 0; t < mesh.tet_count(); ++t) {
     double size = 0.0;
@@ -105,15 +104,15 @@ TEST(Stress, LameShellConverges)
   };
   std::vector<double> of_tets, of_nodes, effectivity;
   for (int levels : {1, 2, 3}) {
-    driver::Scenario scenario =
+    step::Scene scenario =
         test::fluid_filled(test::shell(levels, 3 << (levels - 1), a, b), {E, nu, 1000.0, 0.0, 0.0},
                            cavity::Model::linear);
     scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
     cavity::CavitySettings& fluid = scenario.cavities.cavities[0];
     fluid.fluid.kind = law::FluidLaw::Kind::pressure;
     fluid.pressure.mean = p;
-    driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-    const driver::StepResult result = simulation.initial_state();
+    step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+    const step::StepResult result = simulation.initial_state();
     ASSERT_TRUE(result.state) << result.why;
     const tissue::StressField field = simulation.tissue().stresses(result.state->tissue.u);
     double off = 0.0, all = 0.0, true_error = 0.0;
@@ -138,11 +137,11 @@ TEST(Stress, LameShellConverges)
       }
     }
     const core::VecX estimate =
-        driver::recovery_errors(scenario.mesh, scenario.tissue.materials, field);
+        post::recovery_errors(scenario.mesh, scenario.tissue.materials, field);
     effectivity.push_back(std::sqrt(estimate.sum() / true_error));
     expect_sizes_lead_to_target(scenario.mesh, estimate);
     of_tets.push_back(std::sqrt(off / all));
-    const core::VecX means = driver::nodal_means(scenario.mesh, field);
+    const core::VecX means = post::nodal_means(scenario.mesh, field);
     off = all = 0.0;
     for (int i = 0; i < scenario.mesh.node_count(); ++i) {
       const Vec3& x = scenario.mesh.x[static_cast<std::size_t>(i)];

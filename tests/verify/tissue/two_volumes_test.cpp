@@ -9,19 +9,19 @@ using core::Vec3;
 
 /// A bar along x without a needle that slides between walls at y and z, held at x0: every section
 /// moves as a whole.
-driver::Scenario confined_bar(bool quadratic)
+step::Scene confined_bar(bool quadratic)
 {
   test::BlockShape shape{4, 2, 2, Vec3(0.04, 0.02, 0.02), 0.0};
   shape.quadratic = quadratic;
-  driver::Scenario scenario = test::needle_scenario(shape);
+  step::Scene scenario = test::needle_scenario(shape);
   scenario.needles.clear();
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  scenario.time.is_static = true;
   scenario.tissue.boundary.fixed = {{"x0", 1}, {"y0", 2}, {"y1", 2}, {"z0", 4}, {"z1", 4}};
   return scenario;
 }
 
 /// Displacements along x of all nodes at this x.
-std::vector<double> at(const driver::Scenario& scenario, const fem::GlobalField& u, double x)
+std::vector<double> at(const step::Scene& scenario, const fem::GlobalField& u, double x)
 {
   std::vector<double> found;
   for (int node = 0; node < scenario.mesh.node_count(); ++node)
@@ -36,7 +36,7 @@ std::vector<double> at(const driver::Scenario& scenario, const fem::GlobalField&
 TEST(TwoVolumes, KeepADilatationEach)
 {
   for (bool quadratic : {false, true}) {
-    driver::Scenario scenario = confined_bar(quadratic);
+    step::Scene scenario = confined_bar(quadratic);
     mesh::Mesh& mesh = scenario.mesh;
     mesh.volumes = {"soft", "stiff"};
     for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -49,8 +49,8 @@ TEST(TwoVolumes, KeepADilatationEach)
     scenario.tissue.materials = {soft, stiff};
     scenario.tissue.dilatation = tissue::Dilatation::nodal;
     scenario.tissue.boundary.displacements = {{"x1", Vec3(-1e-4, 0.0, 0.0), std::nullopt}};
-    driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-    const driver::StepResult start = simulation.initial_state();
+    step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+    const step::StepResult start = simulation.initial_state();
     ASSERT_TRUE(start.state) << start.why;
     const fem::GlobalField u = simulation.space().gather(start.state->tissue.u);
     const double of_soft = 1.0 / (soft.lambda() + 2.0 * soft.mu());
@@ -66,12 +66,12 @@ TEST(TwoVolumes, KeepADilatationEach)
 // moment has it.
 TEST(Traction, IsThatOfTheEndOfTheStep)
 {
-  driver::Scenario scenario = confined_bar(false);
+  step::Scene scenario = confined_bar(false);
   scenario.tissue.materials = {{5000.0, 0.3, 1000.0, 0.0, 0.0}};
   scenario.tissue.boundary.tractions = {
       {"x1", Vec3(20.0, 0.0, 0.0), core::parse_csv("time,factor\n0,0\n1,1\n", "ramp.csv")}};
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  driver::StepResult result = simulation.initial_state();
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::StepResult result = simulation.initial_state();
   const tissue::Material& m = scenario.tissue.materials[0];
   const double whole = 20.0 / (m.lambda() + 2.0 * m.mu()) * 0.04;
   for (int n = 1; n <= 4; ++n) {

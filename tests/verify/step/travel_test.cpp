@@ -14,7 +14,7 @@ using core::Vec3;
 TEST(Travel, IsVelocityTimesTimeBeforeThePunctureAsWell)
 {
   for (const needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
-    driver::Scenario scenario = test::scene(1e6, 0.0);
+    step::Scene scenario = test::scene(1e6, 0.0);
     needle::BaseMotion& motion = scenario.needles[0].motion;
     scenario.needles[0].model = model;
     motion.direction = Vec3(1.0, 0.1, -0.2).normalized();
@@ -35,7 +35,7 @@ TEST(Travel, IsVelocityTimesTimeBeforeThePunctureAsWell)
 /// Travel at the end of a run along a trajectory.
 double along(const std::string& table, double end)
 {
-  driver::Scenario scenario = test::needle_scenario(test::plain);
+  step::Scene scenario = test::needle_scenario(test::plain);
   scenario.needles[0].model = needle::Model::beam;
   scenario.needles[0].motion.inserted = 0.01;
   scenario.needles[0].motion.trajectory = core::parse_csv(table, "path.csv");
@@ -64,9 +64,9 @@ TEST(Travel, CountsOnlyWhatGoesAlongTheNeedle)
 // A value of the state: steps that are tried and dropped leave no trace in it.
 TEST(Travel, OfADroppedStepDoesNotCount)
 {
-  const driver::Scenario scenario = test::needle_scenario(test::plain);
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  driver::State state = *simulation.initial_state().state;
+  const step::Scene scenario = test::needle_scenario(test::plain);
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::State state = *simulation.initial_state().state;
   for (int n = 1; n <= 3; ++n) {
     simulation.step(state, {0.02 * n + 0.5, 0.52, false});
     state = *simulation.step(state, {0.02 * n, 0.02, false}).state;

@@ -16,9 +16,9 @@ using core::Vec3;
 constexpr double end = 0.1;
 
 /// A block with a beam in it, no friction, pulled by a traction that begins and ends smoothly.
-driver::Scenario pulled(double h, bool second_order, tissue::Model model)
+step::Scene pulled(double h, bool second_order, tissue::Model model)
 {
-  driver::Scenario scenario = test::needle_scenario({4, 3, 3, Vec3(0.06, 0.04, 0.04), 0.1});
+  step::Scene scenario = test::needle_scenario({4, 3, 3, Vec3(0.06, 0.04, 0.04), 0.1});
   scenario.tissue.model = model;
   scenario.tissue.materials[0].rayleigh_stiffness = 0.002;
   scenario.time.second_order = second_order;
@@ -46,7 +46,7 @@ driver::Scenario pulled(double h, bool second_order, tissue::Model model)
 core::VecX answer(double h, bool second_order, tissue::Model model)
 {
   const test::Run run = test::run(pulled(h, second_order, model));
-  const driver::State& last = run.states.back();
+  const step::State& last = run.states.back();
   core::VecX all(last.tissue.u.value.size() + 3);
   all << last.tissue.u.value, last.needles[0].shaft.tip();
   EXPECT_GT(run.reports.back().rows, 5);

@@ -1,4 +1,4 @@
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,40 +7,39 @@
 #include "core/words.hpp"
 #include "law/solve.hpp"
 
-namespace trocar::driver {
+namespace trocar::step {
 namespace {
 
-constexpr int most_linearisations = 50;  ///< of one static equilibrium
 constexpr int most_load_steps = 64;
 
 }  // namespace
 
-Simulation::Simulation(const Scenario& scenario, const base::Comm& comm)
-    : scenario_(scenario),
-      space_(scenario.mesh, mesh::partition_nodes(scenario.mesh, comm), comm,
-             tissue::rings(scenario.tissue.dilatation)),
-      tissue_(scenario.mesh, space_, scenario.tissue, ledger_)
+Simulation::Simulation(const Scene& scene, const base::Comm& comm)
+    : scene_(scene),
+      space_(scene.mesh, mesh::partition_nodes(scene.mesh, comm), comm,
+             tissue::rings(scene.tissue.dilatation)),
+      tissue_(scene.mesh, space_, scene.tissue, ledger_)
 {
-  if (scenario.time.analysis != Analysis::dynamic || scenario.time.start_in_equilibrium)
-    tissue::require_supports(tissue_.fixed(), scenario.mesh);
-  if (!scenario.cavities.cavities.empty())
-    cavities_.emplace(scenario.mesh, space_, scenario.cavities, ledger_);
-  driven_at_start_ = !scenario.tissue.boundary.displacements.empty() || cavities_.has_value();
-  for (const needle::NeedleSettings& settings : scenario.needles) {
+  if (scene.time.is_static || scene.time.start_in_equilibrium)
+    tissue::require_supports(tissue_.fixed(), scene.mesh);
+  if (!scene.cavities.cavities.empty())
+    cavities_.emplace(scene.mesh, space_, scene.cavities, ledger_);
+  driven_at_start_ = !scene.tissue.boundary.displacements.empty() || cavities_.has_value();
+  for (const needle::NeedleSettings& settings : scene.needles) {
     needles_.emplace_back(settings);
     driven_at_start_ =
         driven_at_start_ || settings.motion.inserted > 0.0 || settings.motion.trajectory;
   }
   if (needles_.empty()) return;
-  locator_.emplace(scenario.mesh);
-  insertion_.emplace(scenario.mesh, *locator_, scenario.insertion);
+  locator_.emplace(scene.mesh);
+  insertion_.emplace(scene.mesh, *locator_, scene.insertion);
 }
 
 void Simulation::prepare()
 {
   const bool is_static =
-      scenario_.time.analysis != Analysis::dynamic || scenario_.time.start_in_equilibrium;
-  core::TimeStep first{0.0, scenario_.time.step, is_static};
+      scene_.time.is_static || scene_.time.start_in_equilibrium;
+  core::TimeStep first{0.0, scene_.time.step, is_static};
   State unused;
   Differenced velocity;
   past_of({}, first, unused, velocity);
@@ -56,18 +55,18 @@ StepResult Simulation::initial_state()
     state.insertions.push_back(insertion_->start(needle));
   }
   if (cavities_) state.cavities = cavities_->start();
-  if (scenario_.time.start_in_equilibrium || scenario_.time.analysis != Analysis::dynamic)
-    return equilibrium(state, {0.0, scenario_.time.step, true});
+  const core::TimeStep start = core::TimeStep::at_start(scene_.time.step);
+  if (scene_.time.start_in_equilibrium || scene_.time.is_static) return equilibrium(state, start);
   StepResult result{state, {}, {}};
   for (std::size_t i = 0; i < needles_.size(); ++i)
     result.report.needles.push_back(
         {state.needles[i].shaft.tip(), insertion_->depth(state.insertions[i]), {}, {}});
   if (cavities_) {
-    cavities_->take({}, {}, {}, result.state->cavities);
+    cavities_->take({}, {}, start, result.state->cavities);
     result.report.cavities = cavities_->accept(result.state->cavities, state.tissue.u,
-                                               cavities_->shape(state.tissue.u), {});
+                                               cavities_->shape(state.tissue.u), start);
   }
-  const tissue::BoundaryConditions& boundary = scenario_.tissue.boundary;
+  const tissue::BoundaryConditions& boundary = scene_.tissue.boundary;
   result.report.holders.tools.assign(boundary.displacements.size(), Vec3::Zero());
   result.report.holders.supports.assign(boundary.fixed.size(), Vec3::Zero());
   return result;
@@ -75,8 +74,8 @@ StepResult Simulation::initial_state()
 
 StepResult Simulation::equilibrium(const State& old, const core::TimeStep& now)
 {
-  // Along a path in time the clock halves the step; only the start is loaded in parts.
-  const int most_parts = now.t > 0.0 ? 1 : most_load_steps;
+  // Along a path in time the stepper halves the step; only the start is loaded in parts.
+  const int most_parts = now.start ? most_load_steps : 1;
   StepResult result;
   for (int parts = 1; parts <= most_parts; parts *= 2) {
     State from = old;
@@ -102,8 +101,8 @@ StepResult Simulation::step(const State& old, const core::TimeStep& step)
   // What time derivatives count from.
   const State& past = past_of(old, now, extrapolated, next.velocity);
   // 1 events, decided before and frozen during the solve
-  if (const auto trouble = move_needles(old, next)) return StepResult::rejected(*trouble);
-  if (cavities_ && now.t > 0.0) advance_cavities(old, next);
+  if (const auto trouble = move_needles(old, now, next)) return StepResult::rejected(*trouble);
+  if (cavities_ && !now.start) advance_cavities(old, next);
   StepReport report;
   const Effort effort = effort_of(now);
   double residual = std::numeric_limits<double>::infinity();
@@ -149,15 +148,15 @@ try {
   pass.trouble = tissue.trouble;
   if (pass.trouble) return pass;
   // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
-  for (int turn = 1; turn <= scenario_.time.direction_max; ++turn) {
+  for (int turn = 1; turn <= scene_.time.direction_max; ++turn) {
     pass = constrained_step(past, now, tissue, residual, walls, next, last, report);  // 3 to 5
     if (!pass.trouble) walls = walls_of(next);
-    if (pass.trouble || pass.rows.set.empty() || turn == scenario_.time.direction_max) break;
+    if (pass.trouble || pass.rows.set.empty() || turn == scene_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
   }
   if (pass.trouble) return pass;
   pass.folded = tissue_.folded(next.tissue.u);
-  if (scenario_.tissue.allow_inversion && next.tissue.u.value.allFinite()) {
+  if (scene_.tissue.allow_inversion && next.tissue.u.value.allFinite()) {
     report.folded = pass.folded;
     pass.folded = -1;
   }
@@ -174,14 +173,15 @@ try {
   return pass;
 }
 
-std::optional<std::string> Simulation::move_needles(const State& old, State& next) const
+std::optional<std::string> Simulation::move_needles(const State& old, const core::TimeStep& now,
+                                                    State& next) const
 {
   if (needles_.empty()) return std::nullopt;
   const fem::GlobalField u = space_.gather(old.tissue.u);
-  const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
+  const insertion::Deformed tissue(scene_.mesh, *locator_, u);
   for (std::size_t i = 0; i < needles_.size(); ++i) {
     next.needles[i] = needles_[i].predict(old.needles[i], next.t);
-    if (!(next.t > 0.0)) continue;
+    if (now.start) continue;
     next.insertions[i] = insertion_->advance(old.insertions[i], next.needles[i].shaft, tissue);
     if (insertion_->astray(next.insertions[i], next.needles[i].shaft, tissue))
       return "needle '" + needles_[i].settings().name +
@@ -214,8 +214,8 @@ Simulation::Rows Simulation::coupling_rows(const core::TimeStep& now, const Stat
                                    [](const auto& one) { return one.touches(); });
   if (!coupled) return rows;
   const fem::GlobalField u = space_.gather(state.tissue.u);
-  const insertion::Deformed tissue(scenario_.mesh, *locator_, u);
-  const double passing = now.t > 0.0 ? now.h : 0.0;  // the start takes no time
+  const insertion::Deformed tissue(scene_.mesh, *locator_, u);
+  const double passing = now.start ? 0.0 : now.h;
   for (std::size_t i = 0; i < needles_.size(); ++i)
     rows.of_needle.push_back(insertion_->add_rows(state.insertions[i], state.needles[i].shaft,
                                                   tissue, static_cast<int>(i), passing, rows.set));
@@ -226,7 +226,7 @@ void Simulation::accept(const State& old, const State& past, const core::TimeSte
                         const Pass& pass, const cavity::Shape& walls, State& next,
                         StepReport& report) const
 {
-  const tissue::BoundaryConditions& boundary = scenario_.tissue.boundary;
+  const tissue::BoundaryConditions& boundary = scene_.tissue.boundary;
   if (!boundary.displacements.empty() || !boundary.fixed.empty())
     report.holders =
         tissue_.holder_forces(past.tissue, next.tissue.u, now, all_forces(pass, next, walls, now));
@@ -244,14 +244,14 @@ void Simulation::accept(const State& old, const State& past, const core::TimeSte
     if (needle.coupling.tip != insertion::TipOutcome::holds) {
       if (!u) u = space_.gather(next.tissue.u);
       insertion_->settle(next.insertions[i], needle.coupling, next.needles[i].shaft,
-                         {scenario_.mesh, *locator_, *u});
+                         {scene_.mesh, *locator_, *u});
     }
     needle.tip = next.needles[i].shaft.tip();
     needle.depth = insertion_->depth(next.insertions[i]);
   }
-  if (scenario_.time.second_order && now.t > 0.0)
+  if (scene_.time.second_order && !now.start)
     next.before = Before{velocity_of(old, now.h), old.tissue, old.needles};
-  if (scenario_.output.energy) account(old, past, now, pass, walls, report, next);
+  if (scene_.energy) account(old, past, now, pass, walls, report, next);
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

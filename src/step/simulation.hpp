@@ -9,106 +9,18 @@
 
 #include "cavity/cavities.hpp"
 #include "constraint/reduce.hpp"
-#include "driver/scenario.hpp"
 #include "mesh/partition.hpp"
+#include "step/report.hpp"
+#include "step/scene.hpp"
 
-namespace trocar::driver {
-
-using core::Vec3;
-
-/// Where the energy went [J]: what is stored at the end of a step, and sums since the start.
-/// supplied = stored - stored at the start + friction + cutting + damping + rest; the rest is what
-/// backward Euler loses and what frozen geometry leaves.
-struct EnergyAccount
-{
-  double elastic = 0.0, kinetic = 0.0;
-  double stored_at_start = 0.0;
-  double supplied = 0.0;  ///< by holders, loads and moving supports
-  double friction = 0.0, cutting = 0.0, damping = 0.0;
-
-  double rest() const
-  {
-    return supplied - (elastic + kinetic - stored_at_start) - friction - cutting - damping;
-  }
-};
-
-/// Velocity as it was differenced from displacements: v = u'(t) - lag u'' + curvature u''' + O(h³).
-struct Differenced
-{
-  double lag = 0.0;        ///< [s]
-  double curvature = 0.0;  ///< [s²]
-};
-
-/// What BDF2 remembers of the step before.
-struct Before
-{
-  Differenced velocity;
-  tissue::TissueState tissue;
-  std::vector<needle::NeedleState> needles;
-};
-
-/// All that changes in a run. A value: a rejected step leaves no trace.
-struct State
-{
-  double t = 0.0;        ///< [s]
-  double h = 0.0;        ///< length of the step that led here [s]; 0: none in time did
-  Differenced velocity;  ///< exact where none did
-  tissue::TissueState tissue;
-  std::vector<needle::NeedleState> needles;
-  std::vector<insertion::InsertionState> insertions;  ///< by needle
-  cavity::State cavities;
-  std::optional<Before> before;  ///< with -time_scheme bdf2 only
-  EnergyAccount energy;          ///< kept with -output_energy only
-};
-
-/// What one needle did in a step.
-struct NeedleReport
-{
-  Vec3 tip = Vec3::Zero();  ///< [m]
-  double depth = 0.0;       ///< inserted path length in tissue [m]
-  needle::Wrench base;      ///< by the holder on the needle
-  insertion::CouplingReport coupling;
-};
-
-/// Figures of an accepted step, for log and histories. Equal on every rank.
-struct StepReport
-{
-  std::vector<NeedleReport> needles;
-  std::vector<cavity::CavityReport> cavities;
-  tissue::HolderForces holders;            ///< of prescribed displacements and supports
-  int pressure_updates = 0;                ///< of frozen cavities
-  int rows = 0, rank = 0, iterations = 0;  ///< of the last constraint problem; iterations summed
-  double residual = 0.0;                   ///< worst of the step [m]
-  double unbalanced = 0.0;                 ///< tissue::Balance::worst at the end of the step
-  int folded = -1;                         ///< tet that linear tissue was allowed to fold; -1: none
-  double condition = 0.0;                  ///< see law::Multipliers
-  int outer = 0;                           ///< most solves that state-dependent bounds took
-  double contraction = 0.0;                ///< worst ratio of their last two changes
-  bool nonunique = false;
-  std::vector<law::Trial> trials;      ///< of the solvers compared
-  solve::ComplianceReport compliance;  ///< sums over the step's linearisations
-  int linearisations = 0;
-  double leftover_gap = 0.0;  ///< what the laws with a stale compliance leave of the gaps [m]
-  double stale_error = 0.0;   ///< worst displacement error of that, on request [m]
-  int passes = 0;  ///< sweeps with the laws behind them: one each, more with an older factor
-};
-
-/// An accepted new state, or why the step was rejected. Agreed by all ranks.
-struct StepResult
-{
-  std::optional<State> state;
-  StepReport report;
-  std::string why;
-
-  static StepResult rejected(const std::string& why) { return {std::nullopt, {}, why}; }
-};
+namespace trocar::step {
 
 /// One scene: bodies, needles, their coupling, and the step of the papers.
 class Simulation
 {
  public:
-  /// Borrows the scenario. Collective.
-  Simulation(const Scenario& scenario, const base::Comm& comm);
+  /// Borrows the scene. Collective.
+  Simulation(const Scene& scene, const base::Comm& comm);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -127,7 +39,7 @@ class Simulation
   /// Factors the first operator, for -check. Collective.
   void prepare();
 
-  const Scenario& scenario() const { return scenario_; }
+  const Scene& scene() const { return scene_; }
   const fem::Space& space() const { return space_; }
   const core::Ledger& ledger() const { return ledger_; }
   core::Ledger& ledger() { return ledger_; }
@@ -215,7 +127,8 @@ class Simulation
   void advance_cavities(const State& old, State& next) const;
   cavity::Shape walls_of(const State& state) const;
   bool gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const;
-  std::optional<std::string> move_needles(const State& old, State& next) const;
+  std::optional<std::string> move_needles(const State& old, const core::TimeStep& now,
+                                          State& next) const;
   Rows coupling_rows(const core::TimeStep& now, const State& state) const;
   void meet_laws(const tissue::FreeMotion& tissue, const fem::OwnedField& start,
                  const core::VecX& last, Pass& pass, fem::OwnedField& u, StepReport& report);
@@ -251,7 +164,7 @@ class Simulation
   void account(const State& old, const State& past, const core::TimeStep& now, const Pass& pass,
                const cavity::Shape& walls, const StepReport& report, State& next) const;
 
-  const Scenario& scenario_;
+  const Scene& scene_;
   core::Ledger ledger_;
   fem::Space space_;
   tissue::Tissue tissue_;
@@ -263,4 +176,4 @@ class Simulation
   std::map<core::Rates, cavity::PressureAnswers> unit_answers_;  ///< frozen cavities, by operator
 };
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

@@ -24,8 +24,8 @@ constexpr double end = 0.1, unit = end / finest;
 enum class Pattern { alternating, random, halved_once, quarters, eighths };
 
 /// Steps of 1 or 2 times `least` units each; no step is more than twice as long as that before.
-/// Quarters and eighths: 8 times `least`, some of them in parts, as the clock has them when halves
-/// are rejected.
+/// Quarters and eighths: 8 times `least`, some of them in parts, as the time stepper has them when
+/// halves are rejected.
 std::vector<int> pattern(Pattern kind, int least)
 {
   std::vector<int> steps;
@@ -60,8 +60,8 @@ double smooth(double t)
 }
 
 /// What is looked at after every step, by the units of time that passed.
-using Answer = std::function<double(const driver::StepReport&)>;
-std::map<int, double> answers(driver::Scenario scenario, bool second_order,
+using Answer = std::function<double(const step::StepReport&)>;
+std::map<int, double> answers(step::Scene scenario, bool second_order,
                               const std::vector<int>& steps, const Answer& answer)
 {
   scenario.time.second_order = second_order;
@@ -87,7 +87,7 @@ double worst(const std::map<int, double>& found, const std::map<int, double>& ex
   return error / size;
 }
 
-void expect_orders(const char* name, const driver::Scenario& scenario, const Answer& answer,
+void expect_orders(const char* name, const step::Scene& scenario, const Answer& answer,
                    const std::map<int, double>& exact, int finest_steps)
 {
   for (bool second_order : {false, true})
@@ -104,7 +104,7 @@ void expect_orders(const char* name, const driver::Scenario& scenario, const Ans
     }
 }
 
-std::map<int, double> by_small_steps(const driver::Scenario& scenario, const Answer& answer)
+std::map<int, double> by_small_steps(const step::Scene& scenario, const Answer& answer)
 {
   return answers(scenario, true, std::vector<int>(finest, 1), answer);
 }
@@ -113,7 +113,7 @@ std::map<int, double> by_small_steps(const driver::Scenario& scenario, const Ans
 TEST(VariableSteps, MassThatIsDriven)
 {
   constexpr double omega = 40.0, amplitude = 0.01;
-  driver::Scenario scenario = test::needle_scenario({4, 2, 2, Vec3(0.04, 0.02, 0.02)});
+  step::Scene scenario = test::needle_scenario({4, 2, 2, Vec3(0.04, 0.02, 0.02)});
   scenario.needles.clear();
   scenario.tissue.materials = {{1e12, 0.3, 1000.0, 0.0, 0.0}};
   scenario.tissue.boundary.fixed.clear();
@@ -123,7 +123,7 @@ TEST(VariableSteps, MassThatIsDriven)
   const double mass = 0.016;
   for (int k = 0; k <= finest; ++k)
     exact[k] = mass * amplitude * omega * omega * std::cos(omega * k * unit);
-  const Answer force = [](const driver::StepReport& report) { return report.holders.tools[0].x(); };
+  const Answer force = [](const step::StepReport& report) { return report.holders.tools[0].x(); };
   // Steps stay far above the time that waves take: the block starts unstrained.
   expect_orders("driven mass", scenario, force, exact, 4);
   // Halves of halves: BDF2 is of order 1 in some of these steps, and never wild.
@@ -146,12 +146,12 @@ TEST(VariableSteps, MassThatIsDriven)
 // A fluid whose volume is driven: pressures of incompressible motion.
 TEST(VariableSteps, FluidThatIsDriven)
 {
-  driver::Scenario scenario = test::cavity_scenario(3, 1, cavity::Model::linear);
-  scenario.time.analysis = driver::Analysis::dynamic;
+  step::Scene scenario = test::cavity_scenario(3, 1, cavity::Model::linear);
+  scenario.time.is_static = false;
   scenario.tissue.materials[0].rayleigh_stiffness = 0.002;
   scenario.cavities.cavities[0].volume_curve =
       curve([](double t) { return 1.0 + 0.2 * smooth(t); });
-  const Answer pressure = [](const driver::StepReport& report) {
+  const Answer pressure = [](const step::StepReport& report) {
     return report.cavities[0].pressure;
   };
   expect_orders("driven fluid", scenario, pressure, by_small_steps(scenario, pressure), 2);
@@ -160,7 +160,7 @@ TEST(VariableSteps, FluidThatIsDriven)
 // A needle that sticks everywhere and is moved.
 TEST(VariableSteps, NeedleThatSticks)
 {
-  driver::Scenario scenario = test::needle_scenario({4, 3, 3, Vec3(0.06, 0.04, 0.04), 0.1});
+  step::Scene scenario = test::needle_scenario({4, 3, 3, Vec3(0.06, 0.04, 0.04), 0.1});
   scenario.tissue.materials[0].rayleigh_stiffness = 0.002;
   scenario.insertion.friction = test::same({1e6, 1e6, 0.0});
   needle::NeedleSettings& needle = scenario.needles[0];
@@ -172,7 +172,7 @@ TEST(VariableSteps, NeedleThatSticks)
     trajectory.rows.push_back({k * unit, start.x() + s, start.y() + 0.5 * s, start.z()});
   }
   needle.motion.trajectory = trajectory;
-  const Answer force = [](const driver::StepReport& report) {
+  const Answer force = [](const step::StepReport& report) {
     return report.needles[0].base.force.x();
   };
   expect_orders("stuck needle", scenario, force, by_small_steps(scenario, force), 2);

@@ -1,6 +1,6 @@
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 
-namespace trocar::driver {
+namespace trocar::step {
 namespace {
 
 /// What a velocity at τ from the end of the step stands for there; see past_of.
@@ -103,4 +103,4 @@ const State& Simulation::past_of(const State& old, core::TimeStep& now, State& e
   return extrapolated;
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

@@ -13,9 +13,9 @@ using core::Vec3;
 using test::distorted;
 
 /// A block sheared by 15 degrees within the run while a bending needle goes in.
-driver::Scenario sheared()
+step::Scene sheared()
 {
-  driver::Scenario scenario = test::needle_scenario(distorted);
+  step::Scene scenario = test::needle_scenario(distorted);
   scenario.tissue.model = tissue::Model::corotational;
   const core::Csv ramp{"shear", {"time", "factor"}, {{0, 0}, {1, 1}}};
   scenario.tissue.boundary.displacements = {{"z1", Vec3(0.0105, 0, 0), ramp}};
@@ -28,7 +28,7 @@ driver::Scenario sheared()
 }
 
 /// Both runs; forces and displacements differ by no more than `tolerance` of their size.
-void expect_equal_runs(driver::Scenario scenario, double lag, double tolerance)
+void expect_equal_runs(step::Scene scenario, double lag, double tolerance)
 {
   scenario.tissue.lag_tolerance = 0.0;
   const test::Run exact = test::run(scenario);
@@ -63,7 +63,7 @@ TEST(Lag, AnInsertionIntoShearedTissueIsTheSame)
 
 TEST(Lag, RowsWhoseBoundFollowsAnotherAreTheSame)
 {
-  driver::Scenario scenario = sheared();
+  step::Scene scenario = sheared();
   scenario.needles[0].bevel = 0.5;
   scenario.insertion.tip.cutting = {0.1};
   scenario.insertion.puncture.volume = {0.05};
@@ -72,7 +72,7 @@ TEST(Lag, RowsWhoseBoundFollowsAnotherAreTheSame)
 
 TEST(Lag, SoftRowsAndTwoNeedlesAreTheSame)
 {
-  driver::Scenario scenario = sheared();
+  step::Scene scenario = sheared();
   scenario.insertion.friction = test::same({12.0, 8.0, 100.0});
   scenario.needles.push_back(scenario.needles[0]);
   scenario.needles[1].name = "second";
@@ -82,15 +82,15 @@ TEST(Lag, SoftRowsAndTwoNeedlesAreTheSame)
 
 TEST(Lag, TissueAloneIsTheSame)
 {
-  driver::Scenario scenario = sheared();
+  step::Scene scenario = sheared();
   scenario.needles.clear();
   expect_equal_runs(scenario, 1e-9, 1e-7);
 }
 
 TEST(Lag, AnEquilibriumIsTheSame)
 {
-  driver::Scenario scenario = sheared();
-  scenario.time.analysis = driver::Analysis::equilibrium;
+  step::Scene scenario = sheared();
+  scenario.time.is_static = true;
   scenario.needles[0].motion.inserted = 0.03;
   scenario.needles[0].motion.velocity = 0.0;
   scenario.time.step = 0.1;

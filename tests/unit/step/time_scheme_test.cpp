@@ -2,13 +2,13 @@
 
 #include "support/scene.hpp"
 
-namespace trocar::driver {
+namespace trocar::step {
 namespace {
 
 /// A block that nothing holds, in free fall.
-Scenario falling(bool second_order)
+Scene falling(bool second_order)
 {
-  Scenario scenario = test::needle_scenario({2, 2, 2, Vec3(0.04, 0.04, 0.04), 0.1});
+  Scene scenario = test::needle_scenario({2, 2, 2, Vec3(0.04, 0.04, 0.04), 0.1});
   scenario.needles.clear();
   scenario.tissue.materials = {{5000.0, 0.3, 1000.0, 0.0, 0.0}};
   scenario.tissue.boundary.fixed.clear();
@@ -23,7 +23,7 @@ Scenario falling(bool second_order)
 TEST(TimeSteps, OfEveryLengthFallAsGalileiSays)
 {
   for (bool second_order : {false, true}) {
-    const Scenario scenario = falling(second_order);
+    const Scene scenario = falling(second_order);
     Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
     State state = *simulation.initial_state().state;
     // Nothing is driven: as if a step of the first one's length had led to the start, and the fall
@@ -59,7 +59,7 @@ TEST(TimeSteps, OfStaticsTakeNoTime)
 // The old state is a value: what is tried from it does not touch it.
 TEST(TimeSteps, LeaveTheOldStateAlone)
 {
-  const Scenario scenario = falling(true);
+  const Scene scenario = falling(true);
   Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
   const State start = *simulation.initial_state().state;
   const State one = *simulation.step(start, {0.01, 0.01, false}).state;
@@ -71,4 +71,4 @@ TEST(TimeSteps, LeaveTheOldStateAlone)
 }
 
 }  // namespace
-}  // namespace trocar::driver
+}  // namespace trocar::step

@@ -2,12 +2,12 @@
 #include <string>
 #include <vector>
 
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 #include "law/solve.hpp"
 
 // What cavities do in a step beside their rows: forces, and the frozen model's search for pressures
 // around the laws of all other rows.
-namespace trocar::driver {
+namespace trocar::step {
 
 /// Walls where the state has them: looked at once for every place of the tissue, and only when some
 /// load or volume is theirs.
@@ -123,4 +123,4 @@ void Simulation::meet_frozen_laws(const core::TimeStep& now, const tissue::FreeM
   }
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

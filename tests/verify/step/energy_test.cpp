@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "support/scene.hpp"
 
@@ -10,13 +11,13 @@ namespace {
 using core::Vec3;
 
 /// A block without needle, held at x0, that a traction or moving support loads.
-driver::Scenario bare(driver::Analysis analysis)
+step::Scene bare(bool is_static)
 {
-  driver::Scenario scenario = test::needle_scenario({4, 2, 2, Vec3(0.06, 0.03, 0.03), 0.2});
+  step::Scene scenario = test::needle_scenario({4, 2, 2, Vec3(0.06, 0.03, 0.03), 0.2});
   scenario.needles.clear();
   scenario.tissue.boundary.fixed = {{"x0", 7}};
-  scenario.time.analysis = analysis;
-  scenario.output.energy = true;
+  scenario.time.is_static = is_static;
+  scenario.energy = true;
   return scenario;
 }
 
@@ -24,13 +25,13 @@ driver::Scenario bare(driver::Analysis analysis)
 // (n+1)/n times what is stored, so the rest is the stored energy over n, exactly.
 TEST(Energy, RestOfAStaticPathIsTheEndpointRulesError)
 {
-  driver::Scenario scenario = bare(driver::Analysis::equilibrium);
+  step::Scene scenario = bare(true);
   scenario.tissue.boundary.displacements = {
       {"x1", Vec3(0.003, 0.0, 0.0), core::parse_csv("time,factor\n0,0\n1,1\n", "ramp.csv")}};
   for (int steps : {1, 4}) {
     scenario.time.step = 1.0 / steps;
     scenario.time.end = 1.0;
-    const driver::EnergyAccount e = test::run(scenario).states.back().energy;
+    const step::EnergyAccount e = test::run(scenario).states.back().energy;
     EXPECT_GT(e.elastic, 1e-5);
     EXPECT_NEAR(e.rest(), e.elastic / steps, 1e-9 * e.elastic);
     EXPECT_NEAR(e.supplied, e.elastic * (steps + 1) / steps, 1e-9 * e.elastic);
@@ -41,7 +42,7 @@ TEST(Energy, RestOfAStaticPathIsTheEndpointRulesError)
 // with half the step; Rayleigh damping is counted apart.
 TEST(Energy, BackwardEulerOnlyLosesAndLessWithSmallerSteps)
 {
-  driver::Scenario scenario = bare(driver::Analysis::dynamic);
+  step::Scene scenario = bare(false);
   scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);
   scenario.tissue.materials[0].rayleigh_stiffness = 0.0005;
   scenario.time.end = 0.02;
@@ -50,7 +51,7 @@ TEST(Energy, BackwardEulerOnlyLosesAndLessWithSmallerSteps)
     scenario.time.step = i == 0 ? 2e-4 : 1e-4;
     const test::Run run = test::run(scenario);
     double last = 0.0;
-    for (const driver::State& state : run.states) {
+    for (const step::State& state : run.states) {
       EXPECT_GE(state.energy.rest(), last - 1e-15);
       last = state.energy.rest();
     }
@@ -65,14 +66,14 @@ TEST(Energy, BackwardEulerOnlyLosesAndLessWithSmallerSteps)
 // the beam, as heat of friction and cutting; dissipation never falls.
 TEST(Energy, HoldersWorkIsFoundAgain)
 {
-  driver::Scenario scenario = test::needle_scenario({6, 4, 4, Vec3(0.06, 0.04, 0.04), 0.2});
+  step::Scene scenario = test::needle_scenario({6, 4, 4, Vec3(0.06, 0.04, 0.04), 0.2});
   scenario.needles[0].model = needle::Model::beam;
   scenario.insertion.tip.cutting = {0.1};
-  scenario.output.energy = true;
+  scenario.energy = true;
   scenario.time.end = 1.5;
   scenario.time.step = 0.005;
   const test::Run run = test::run(scenario);
-  const driver::EnergyAccount& e = run.states.back().energy;
+  const step::EnergyAccount& e = run.states.back().energy;
   EXPECT_GT(e.supplied, 5e-3);
   EXPECT_GT(e.friction, 1e-3);
   EXPECT_GT(e.cutting, 1e-3);
@@ -85,11 +86,39 @@ TEST(Energy, HoldersWorkIsFoundAgain)
 
 TEST(Energy, IsNotKeptUnlessAsked)
 {
-  driver::Scenario scenario = bare(driver::Analysis::dynamic);
-  scenario.output.energy = false;
+  step::Scene scenario = bare(false);
+  scenario.energy = false;
   scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);
   scenario.time.end = 0.1;
   EXPECT_EQ(test::run(scenario).states.back().energy.supplied, 0.0);
+}
+
+// A needle in the air, rolled faster and faster: its holder's moment does the work that sets it
+// going. With n equal gains of speed, by the ends of the steps, (n + 1)/n of the energy of motion
+// and twice the first gain, which comes about within half a step.
+TEST(Energy, TurningANeedleTakesItsEnergyOfMotion)
+{
+  step::Scene scenario = test::needle_scenario(test::plain);
+  scenario.energy = true;
+  needle::NeedleSettings& needle = scenario.needles[0];
+  needle.motion.entry.x() = -0.01;
+  needle.density = 7850.0;
+  needle.section.outer = 0.002;
+  const int n = 20;
+  scenario.time.step = 0.01;
+  scenario.time.end = 0.01 * n;
+  core::Csv rolls{"roll.csv", {"time", "x", "y", "z", "dx", "dy", "dz", "roll"}, {}};
+  const Vec3 base = needle.motion.entry - Vec3(needle.motion.length, 0.0, 0.0);
+  for (int k = 0; k <= n; ++k)
+    rolls.rows.push_back(
+        {0.01 * k, base.x(), base.y(), base.z(), 1.0, 0.0, 0.0, 0.005 * k * (k + 1)});
+  needle.motion.trajectory = rolls;
+  const step::EnergyAccount e = test::run(scenario).states.back().energy;
+  const double pi = std::numbers::pi, r = 0.002;
+  const double inertia = 0.5 * 7850.0 * pi * r * r * needle.motion.length * r * r;
+  const double rate = n * 0.01 / 0.01;
+  EXPECT_NEAR(e.kinetic, 0.5 * inertia * rate * rate, 1e-9 * inertia * rate * rate);
+  EXPECT_NEAR(e.supplied / e.kinetic, (n * (n + 1.0) + 2.0) / (n * n), 1e-6);
 }
 
 }  // namespace

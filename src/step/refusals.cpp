@@ -3,10 +3,10 @@
 #include <sstream>
 
 #include "core/words.hpp"
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 
 // Why a step is not taken, in words: where it is, and what may help.
-namespace trocar::driver {
+namespace trocar::step {
 namespace {
 
 std::string at_place(const Vec3& X)
@@ -21,11 +21,11 @@ std::string at_place(const Vec3& X)
 
 std::string Simulation::folds_at(int tet) const
 {
-  const mesh::Mesh& mesh = scenario_.mesh;
+  const mesh::Mesh& mesh = scene_.mesh;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& corner : mesh::corners(mesh, tet)) middle += 0.25 * corner;
   const auto at = static_cast<std::size_t>(tet);
-  const bool is_linear = scenario_.tissue.model == tissue::Model::linear;
+  const bool is_linear = scene_.tissue.model == tissue::Model::linear;
   std::ostringstream text;
   text << "an element of the tissue would turn inside out: tet " << mesh.elem_tag[at]
        << " of volume '" << mesh.volumes[static_cast<std::size_t>(mesh.region[at])] << "' near "
@@ -33,7 +33,7 @@ std::string Simulation::folds_at(int tet) const
        << (is_linear ? "; linear tissue is for small strains (take -tissue_model corotational, or "
                        "accept it with -tissue_allow_inversion)"
                      : "; shorter steps or a finer mesh there may help");
-  if (scenario_.tissue.model == tissue::Model::corotational)
+  if (scene_.tissue.model == tissue::Model::corotational)
     text << ", or -tissue_model neo_hookean, which resists being crushed";
   return text.str();
 }
@@ -53,11 +53,11 @@ std::string Simulation::place_of_row(const Pass& pass, int row) const
   if (one.wide >= 0) {
     const int k = row - pass.rows.of_cavities.first;
     const int cavity = pass.rows.of_cavities.cavity[static_cast<std::size_t>(k)];
-    return "cavity '" + scenario_.cavities.cavities[static_cast<std::size_t>(cavity)].name +
+    return "cavity '" + scene_.cavities.cavities[static_cast<std::size_t>(cavity)].name +
            "': its wall is held all over";
   }
   const Vec3 X = one.anchor.mean(
-      [&](int node) -> Vec3 { return scenario_.mesh.x[static_cast<std::size_t>(node)]; });
+      [&](int node) -> Vec3 { return scene_.mesh.x[static_cast<std::size_t>(node)]; });
   return "needle '" + needles_[static_cast<std::size_t>(one.body)].settings().name +
          "' where the undeformed tissue has " + at_place(X) + ", which a support holds";
 }
@@ -70,7 +70,7 @@ std::optional<std::string> Simulation::cannot_stand(const core::TimeStep& now,
   constexpr double most = 1e-6, rounded = 10.0 * std::numeric_limits<double>::epsilon();
   if (!now.is_static || balance.lost <= most * balance.carried) return std::nullopt;
   const auto [soft, stiff] = std::minmax_element(
-      scenario_.tissue.materials.begin(), scenario_.tissue.materials.end(),
+      scene_.tissue.materials.begin(), scene_.tissue.materials.end(),
       [](const tissue::Material& a, const tissue::Material& b) { return a.young < b.young; });
   const double contrast = stiff->young / soft->young;
   if (rounded * contrast <= most) return std::nullopt;
@@ -84,10 +84,10 @@ std::optional<std::string> Simulation::collapsed(const StepReport& report) const
 {
   for (std::size_t i = 0; i < report.cavities.size(); ++i)
     if (!(report.cavities[i].volume > 0.0))
-      return "cavity '" + scenario_.cavities.cavities[i].name + "' has no volume left (" +
+      return "cavity '" + scene_.cavities.cavities[i].name + "' has no volume left (" +
              core::shown(report.cavities[i].volume) +
              " m^3): its walls would go through each other, and contact of walls is not modelled";
   return std::nullopt;
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

@@ -1,9 +1,10 @@
-#include "driver/locking_gauge.hpp"
+#include "post/locking_gauge.hpp"
 
-#include "core/words.hpp"
+#include "cavity/wall.hpp"
+#include "mesh/partition.hpp"
 #include "mesh/quadratic.hpp"
 
-namespace trocar::driver {
+namespace trocar::post {
 
 namespace {
 
@@ -19,7 +20,7 @@ std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSetti
                          tissue::rings(settings.dilatation));
   tissue::Tissue tissue(mesh, space, std::move(settings), ledger);
   tissue::require_supports(tissue.fixed(), mesh);
-  tissue.prepare({0.0, 1.0, true});
+  tissue.prepare(core::TimeStep::at_start(1.0));
   std::vector<double> compliances;
   for (const cavity::CavitySettings& cavity : cavities) {
     const cavity::Wall wall(mesh, cavity.surface, cavity.caps);
@@ -32,23 +33,17 @@ std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSetti
 
 }  // namespace
 
-void report_locking(const Simulation& simulation, Recorder& recorder, const Log& log)
+std::vector<double> locking_ratios(const step::Scene& scene, const base::Comm& comm)
 {
-  const Scenario& scenario = simulation.scenario();
-  const base::Comm& comm = simulation.space().comm();
-  mesh::Mesh mesh = scenario.mesh;
+  mesh::Mesh mesh = scene.mesh;
   mesh::make_quadratic(mesh);
-  tissue::TissueSettings reference = scenario.tissue;
+  tissue::TissueSettings reference = scene.tissue;
   reference.dilatation = tissue::Dilatation::element;
-  const auto& cavities = scenario.cavities.cavities;
-  const std::vector<double> here = wall_compliances(scenario.mesh, scenario.tissue, cavities, comm);
+  const auto& cavities = scene.cavities.cavities;
+  const std::vector<double> here = wall_compliances(scene.mesh, scene.tissue, cavities, comm);
   std::vector<double> ratios = wall_compliances(mesh, reference, cavities, comm);
-  for (std::size_t i = 0; i < cavities.size(); ++i) {
-    ratios[i] /= here[i];
-    log.note("locking gauge: dP/dV of cavity '" + cavities[i].name + "' is " +
-             core::shown(ratios[i]) + " times that of p2_bbar on this mesh");
-  }
-  recorder.table(simulation, "/locking_gauge/ratio", ratios, "1");
+  for (std::size_t i = 0; i < cavities.size(); ++i) ratios[i] /= here[i];
+  return ratios;
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::post

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <limits>
 
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 
 // When a step has been linearised often enough, and what leads on when it has not.
-namespace trocar::driver {
+namespace trocar::step {
 
 /// Static equilibria and steps with pressures that follow the walls are iterated until everything
 /// is balanced. A dynamic one is as many times as it was told to, or as it takes.
@@ -14,10 +14,10 @@ Simulation::Effort Simulation::effort_of(const core::TimeStep& now) const
   constexpr int most = 50;
   constexpr double automatic_first = 1e-3, automatic = 1e-6;
   const bool follows = cavities_ && cavities_->follows();
-  const double tolerance = scenario_.tissue.newton_tolerance;
-  const bool bends = scenario_.tissue.model != tissue::Model::linear;
+  const double tolerance = scene_.tissue.newton_tolerance;
+  const bool bends = scene_.tissue.model != tissue::Model::linear;
   if (now.is_static || follows) return {most, 0.0, tolerance, true};
-  const int told = scenario_.time.newton_max;
+  const int told = scene_.time.newton_max;
   if (told > 1) return {told, 0.0, tolerance, true};
   const double any = std::numeric_limits<double>::max();  // but what is not finite
   if (told == 1 || !bends) return {1, any, any, bends};
@@ -71,7 +71,7 @@ bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const
     const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
     const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
                       row.relative_softness == 0.0 && pass.mobility[i] > 0.0;
-    if (hard && std::abs(row.gap) > std::max(10.0 * scenario_.laws.tolerance, no_gap)) return false;
+    if (hard && std::abs(row.gap) > std::max(10.0 * scene_.laws.tolerance, no_gap)) return false;
   }
   return true;
 }
@@ -134,4 +134,4 @@ bool Simulation::shorten(const State& past, const core::TimeStep& now, bool upri
   return possible;
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

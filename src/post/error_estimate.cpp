@@ -1,22 +1,16 @@
-#include "driver/error_estimate.hpp"
+#include "post/error_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/words.hpp"
-#include "driver/stress_fields.hpp"
 #include "fem/shape.hpp"
-#include "io/size_field.hpp"
 #include "mesh/quadratic.hpp"
 
-namespace trocar::driver {
+namespace trocar::post {
 namespace {
 
-using core::VecX;
-using Six = Eigen::Matrix<double, 6, 1>;
-
 /// s : C⁻¹ : t of two stresses xx, yy, zz, xy, yz, xz [J/m³].
-double complementary(const tissue::Material& m, const Six& s, const Six& t)
+double complementary(const tissue::Material& m, const Voigt& s, const Voigt& t)
 {
   const double product = s.head<3>().dot(t.head<3>()) + 2.0 * s.tail<3>().dot(t.tail<3>());
   return ((1.0 + m.poisson) * product - m.poisson * s.head<3>().sum() * t.head<3>().sum()) /
@@ -86,44 +80,20 @@ VecX wanted_sizes(const mesh::Mesh& mesh, const VecX& errors, double energy, dou
   return size;
 }
 
-void report_error(const Simulation& simulation, Recorder& recorder, const Log& log,
-                  const State& state)
+ErrorEstimate estimate_error(const mesh::Mesh& mesh, const std::vector<tissue::Material>& materials,
+                             const tissue::StressField& field)
 {
-  const Scenario& scenario = simulation.scenario();
-  const tissue::StressField found = simulation.tissue().stresses(state.tissue.u);
-  const VecX errors = recovery_errors(scenario.mesh, scenario.tissue.materials, found);
-  std::vector<double> part(scenario.mesh.volumes.size(), 0.0);
-  double energy = 0.0;  // squared energy norm: twice the energy
-  for (int t = 0; t < scenario.mesh.tet_count(); ++t) {
-    const auto at = static_cast<std::size_t>(t);
-    part[static_cast<std::size_t>(scenario.mesh.region[at])] += errors[t];
-    energy += 2.0 * found.energy[t] * mesh::tet_volume(scenario.mesh, t);
+  ErrorEstimate estimate{recovery_errors(mesh, materials, field)};
+  estimate.part.assign(mesh.volumes.size(), 0.0);
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const auto region = static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(t)]);
+    estimate.part[region] += estimate.errors[t];
+    estimate.energy += 2.0 * field.energy[t] * mesh::tet_volume(mesh, t);
   }
-  const double all = errors.sum();
-  const double relative = all > 0.0 ? std::sqrt(all / (energy + all)) : 0.0;
-  for (double& one : part) one = all > 0.0 ? one / all : 0.0;
-  recorder.table(simulation, "/error_estimate/relative", {relative}, "1");
-  recorder.table(simulation, "/error_estimate/part", part, "1");
-  const VecX of_tet = errors.cwiseSqrt();
-  recorder.table(simulation, "/error_estimate/tet", {of_tet.begin(), of_tet.end()}, "J^(1/2)");
-  log.note("estimated error: " + core::shown(100.0 * relative) + " % of the energy norm");
-  for (std::size_t v = 0; v < part.size(); ++v)
-    log.note("  volume " + scenario.mesh.volumes[v] + ": " + core::shown(100.0 * part[v]) +
-             " % of its square");
-  const double target = scenario.output.error_target;
-  if (target > 0.0 && relative > target)
-    log.note("  for a target of " + core::shown(100.0 * target) + " % edges must be about " +
-             core::shown(std::pow(relative / target, scenario.mesh.quadratic() ? 0.5 : 1.0)) +
-             " times shorter (smooth stress)");
-  if (scenario.output.size_field.empty()) return;
-  if (!(all > 0.0))
-    throw core::option_error(
-        "option -error_size_field: nothing is strained, so there is no error to take sizes from");
-  const VecX sizes = wanted_sizes(scenario.mesh, errors, energy + all, target);
-  base::on_root(simulation.space().comm(),
-                [&] { io::write_size_field(scenario.output.size_field, scenario.mesh, sizes); });
-  log.note("  sizes for the next mesh: " + scenario.output.size_field +
-           " (a background field for Gmsh; scripts/study adapt)");
+  const double all = estimate.sum();
+  estimate.relative = all > 0.0 ? std::sqrt(all / (estimate.energy + all)) : 0.0;
+  for (double& one : estimate.part) one = all > 0.0 ? one / all : 0.0;
+  return estimate;
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::post

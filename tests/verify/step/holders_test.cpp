@@ -13,11 +13,11 @@ using core::Vec3;
 const Vec3 size(0.06, 0.04, 0.03), gravity(1.0, -2.0, -9.81), pull(300.0, 40.0, -70.0);
 
 /// A block that stands on z0, leans against x0 and is pulled at x1 beside its weight.
-driver::Scenario loaded(driver::Analysis analysis)
+step::Scene loaded(bool is_static)
 {
-  driver::Scenario scenario = test::needle_scenario({5, 3, 3, size, 0.2});
+  step::Scene scenario = test::needle_scenario({5, 3, 3, size, 0.2});
   scenario.needles.clear();
-  scenario.time.analysis = analysis;
+  scenario.time.is_static = is_static;
   scenario.time.end = 0.0;
   scenario.tissue.boundary.fixed = {{"z0", 7}, {"x0", 1}};
   scenario.tissue.boundary.gravity = gravity;
@@ -25,7 +25,7 @@ driver::Scenario loaded(driver::Analysis analysis)
   return scenario;
 }
 
-Vec3 loads(const driver::Scenario& scenario)
+Vec3 loads(const step::Scene& scenario)
 {
   return scenario.tissue.materials[0].density * size.prod() * gravity + size.y() * size.z() * pull;
 }
@@ -38,17 +38,17 @@ Vec3 sum(const tissue::HolderForces& holders)
   return total;
 }
 
-tissue::HolderForces at_rest(const driver::Scenario& scenario, MPI_Comm comm = MPI_COMM_WORLD)
+tissue::HolderForces at_rest(const step::Scene& scenario, MPI_Comm comm = MPI_COMM_WORLD)
 {
-  driver::Simulation simulation(scenario, base::Comm(comm));
-  const driver::StepResult result = simulation.initial_state();
+  step::Simulation simulation(scenario, base::Comm(comm));
+  const step::StepResult result = simulation.initial_state();
   EXPECT_TRUE(result.state) << result.why;
   return result.report.holders;
 }
 
 TEST(Supports, CarryTheLoads)
 {
-  driver::Scenario scenario = loaded(driver::Analysis::equilibrium);
+  step::Scene scenario = loaded(true);
   using tissue::Model;
   for (const Model model : {Model::linear, Model::corotational, Model::neo_hookean})
     for (const auto dilatation : {tissue::Dilatation::pointwise, tissue::Dilatation::nodal}) {
@@ -66,7 +66,7 @@ TEST(Supports, CarryTheLoads)
 // A dof counts once: with a tool that holds it, else with the first of its supports.
 TEST(Supports, CountEveryDofOnce)
 {
-  driver::Scenario scenario = loaded(driver::Analysis::equilibrium);
+  step::Scene scenario = loaded(true);
   const tissue::HolderForces first = at_rest(scenario);
   scenario.tissue.boundary.fixed = {{"x0", 1}, {"z0", 7}, {"z0", 4}};
   const tissue::HolderForces second = at_rest(scenario);
@@ -83,7 +83,7 @@ TEST(Supports, CountEveryDofOnce)
 
 TEST(Supports, CarryTheSameOnAnyNumberOfRanks)
 {
-  driver::Scenario scenario = loaded(driver::Analysis::equilibrium);
+  step::Scene scenario = loaded(true);
   scenario.tissue.dilatation = tissue::Dilatation::nodal;
   const tissue::HolderForces ours = at_rest(scenario), alone = at_rest(scenario, MPI_COMM_SELF);
   for (std::size_t k : {0, 1})
@@ -94,11 +94,11 @@ TEST(Supports, CarryTheSameOnAnyNumberOfRanks)
 // every tet's mass at its corners.
 TEST(Supports, CarryLoadsLessInertia)
 {
-  driver::Scenario scenario = loaded(driver::Analysis::dynamic);
+  step::Scene scenario = loaded(false);
   scenario.time.step = 1e-3;
-  driver::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
   const fem::Space& space = simulation.space();
-  driver::StepResult result = simulation.initial_state();
+  step::StepResult result = simulation.initial_state();
   EXPECT_EQ(sum(result.report.holders), Vec3(Vec3::Zero()));
   for (int n = 1; n <= 5; ++n) {
     const fem::OwnedField before = result.state->tissue.v;

@@ -12,11 +12,11 @@ using test::plain;
 // A rejected step leaves no trace: trying an impossible step in between changes nothing.
 TEST(State, ARejectedStepLeavesNoTrace)
 {
-  driver::Scenario scenario = test::needle_scenario(distorted);
+  step::Scene scenario = test::needle_scenario(distorted);
   scenario.tissue.model = tissue::Model::corotational;
   const base::Comm comm(MPI_COMM_WORLD);
-  driver::Simulation plain_run(scenario, comm), tried(scenario, comm);
-  driver::State a = *plain_run.initial_state().state, b = *tried.initial_state().state;
+  step::Simulation plain_run(scenario, comm), tried(scenario, comm);
+  step::State a = *plain_run.initial_state().state, b = *tried.initial_state().state;
   for (int n = 1; n <= 20; ++n) {
     const core::TimeStep now{0.02 * n, 0.02, false};
     tried.step(b, {0.02 * n + 5.0, 5.0, false});  // far too long; accepted or not, it is dropped
@@ -30,7 +30,7 @@ TEST(State, ARejectedStepLeavesNoTrace)
 // Iterating the linearisation changes a bent corotational step a little and then nothing.
 TEST(Newton, IteratedStepsBalanceTheTrueForces)
 {
-  driver::Scenario scenario = test::needle_scenario(plain);
+  step::Scene scenario = test::needle_scenario(plain);
   scenario.needles[0].model = needle::Model::beam;
   scenario.tissue.model = tissue::Model::corotational;
   scenario.time.newton_max = 30;
@@ -45,7 +45,7 @@ TEST(Newton, IteratedStepsBalanceTheTrueForces)
 /// Force on the base of a beam whose base moved 1 cm sideways within 1 s.
 Vec3 side_force(double h, int directions, int newton, core::Ledger& ledger)
 {
-  driver::Scenario scenario = test::needle_scenario(distorted);
+  step::Scene scenario = test::needle_scenario(distorted);
   scenario.needles[0].model = needle::Model::beam;
   scenario.needles[0].section = {0.0004, 0.0, 7e10, 0.3};
   scenario.needles[0].motion.inserted = 0.03;

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 #include "law/immovable.hpp"
 #include "law/solve.hpp"
 
 // 3 to 5 of the step: rows, the dense problem, the correction.
-namespace trocar::driver {
+namespace trocar::step {
 Simulation::Pass Simulation::constrained_step(const State& past, const core::TimeStep& now,
                                               const tissue::FreeMotion& tissue, double residual,
                                               const cavity::Shape& walls, State& next,
@@ -30,10 +30,10 @@ Simulation::Pass Simulation::constrained_step(const State& past, const core::Tim
   const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
   if (last.size() != pass.rows.set.size()) last = pass.rows.set.starts();
   const bool stale =
-      scenario_.tissue.reuse == solve::Reuse::stale && tissue.approach && !pass.rows.set.empty();
+      scene_.tissue.reuse == solve::Reuse::stale && tissue.approach && !pass.rows.set.empty();
   if (cavities_ && !cavities_->frozen(next.cavities).empty())
     meet_frozen_laws(now, tissue, last, pass, next, report);
-  else if (!stale || scenario_.output.stale_error)
+  else if (!stale || scene_.stale_error)
     meet_laws(tissue, start, last, pass, next.tissue.u, report);
   if (stale && !pass.trouble) meet_stale_laws(tissue, start, last, pass, next.tissue.u, report);
   if (pass.trouble) return pass;
@@ -103,7 +103,7 @@ void Simulation::meet_stale_laws(const tissue::FreeMotion& tissue, const fem::Ow
   const core::VecX thought = free + pass.C * pass.forces;
   const core::VecX off = constraint::row_displacements(pass.rows.set, moved - thought);
   report.leftover_gap = std::max(report.leftover_gap, off.cwiseAbs().maxCoeff());
-  if (scenario_.output.stale_error) {
+  if (scene_.stale_error) {
     const fem::OwnedField difference{u.value - exact.value};
     const double mine = difference.value.size() > 0 ? difference.value.cwiseAbs().maxCoeff() : 0.0;
     report.stale_error = std::max(report.stale_error, space_.comm().max(mine));
@@ -147,8 +147,8 @@ double Simulation::lag_tolerance(const core::TimeStep& now, double residual, boo
 {
   constexpr double least = 1e-10, part = 0.1;
   const bool follows = cavities_ && cavities_->follows();
-  const bool iterated = now.is_static || scenario_.time.newton_max > 1;
-  const double lag = scenario_.tissue.lag_tolerance;
+  const bool iterated = now.is_static || scene_.time.newton_max > 1;
+  const double lag = scene_.tissue.lag_tolerance;
   const double leads_on = follows ? 1e-4 : std::max(lag, iterated ? 1e-4 : 0.0);
   if (!(follows || (iterated && rows)) || !std::isfinite(residual)) return leads_on;
   return std::clamp(follows ? residual * residual : part * residual, least, leads_on);
@@ -166,7 +166,7 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
   for (;; ++refreshes) {  // once, or until the laws of fluids settle
     problem = constraint::reduce(set, pass.C, free, pass.needles);
     problem.start = refreshes > 0 ? pass.lambda.lambda : last.converged ? last.lambda : start;
-    pass.lambda = law::solve(problem, scenario_.laws);
+    pass.lambda = law::solve(problem, scene_.laws);
     ++ledger_.constraint_solves;
     if (!pass.lambda.converged)
       return pass.lambda.immovable < 0
@@ -178,7 +178,7 @@ std::optional<std::string> Simulation::solve_constraints(const core::VecX& free,
   }
   pass.same_laws = refreshes == 0 && last.converged &&
                    law::same_states(problem, last.lambda, pass.lambda.lambda);
-  if (!last.converged) law::compare(problem, scenario_.compare, report.trials);
+  if (!last.converged) law::compare(problem, scene_.compare, report.trials);
 
   pass.mobility = law::mobility(problem);
   pass.forces = constraint::probe_forces(set, pass.lambda.lambda);
@@ -210,4 +210,4 @@ void Simulation::correct(const State& past, const core::TimeStep& now,
   }
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

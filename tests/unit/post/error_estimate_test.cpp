@@ -1,16 +1,16 @@
-#include "driver/error_estimate.hpp"
+#include "post/error_estimate.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "mesh/quadratic.hpp"
 #include "support/block.hpp"
 
-namespace trocar::driver {
+namespace trocar::post {
 namespace {
 
 using core::Mat3;
-using core::VecX;
 
 constexpr double E = 4000.0, nu = 0.3;
 constexpr double mu = E / (2.0 * (1.0 + nu)), K = E / (3.0 * (1.0 - 2.0 * nu));
@@ -203,4 +203,4 @@ TEST(WantedSizes, ChangeByNoMoreThanAQuarterAndTwice)
 }
 
 }  // namespace
-}  // namespace trocar::driver
+}  // namespace trocar::post

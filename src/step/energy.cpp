@@ -1,7 +1,7 @@
 #include "core/math.hpp"
-#include "driver/simulation.hpp"
+#include "step/simulation.hpp"
 
-namespace trocar::driver {
+namespace trocar::step {
 
 // Where the energy of a step went. Rows do work λ·δ only in slip: the rest of it passes from needle
 // to tissue and is in neither account.
@@ -34,10 +34,10 @@ void Simulation::account(const State& old, const State& past, const core::TimeSt
     energy.cutting -= done.coupling.cutting_work;
   }
   // The start has no history: what it stores is where the account begins.
-  if (!(now.t > 0.0)) {
+  if (now.start) {
     const double stored = energy.elastic + energy.kinetic;
     energy = {energy.elastic, energy.kinetic, stored, 0.0, 0.0, 0.0, 0.0};
   }
 }
 
-}  // namespace trocar::driver
+}  // namespace trocar::step

@@ -1,0 +1,74 @@
+#include "step/time_stepper.hpp"
+
+#include <cmath>
+
+#include "core/stopwatch.hpp"
+#include "core/words.hpp"
+
+namespace trocar::step {
+namespace {
+
+constexpr int most_halvings = 8;
+
+}  // namespace
+
+long step_count(const TimeSettings& time)
+{
+  return std::lround(time.end / time.step);
+}
+
+State TimeStepper::start()
+{
+  StepResult result = simulation_->initial_state();
+  if (!result.state) throw core::solver_error("at the start: " + result.why);
+  at_ = {};
+  observer_->accepted(*result.state, result.report, at_);
+  return std::move(*result.state);
+}
+
+State TimeStepper::run(State state)
+{
+  const TimeSettings& time = simulation_->scene().time;
+  const long steps = step_count(time);
+  for (long n = 1; n <= steps; ++n) {
+    const bool not_whole = time.step != time.asked;  // T/N times N may miss T by round-off
+    const double t = n == steps && not_whole ? time.end : static_cast<double>(n) * time.step;
+    state = advance(state, {t, time.step, time.is_static});
+  }
+  return state;
+}
+
+State TimeStepper::advance(const State& old, const core::TimeStep& now)
+{
+  return advance_in_parts(old, now, 0, true);
+}
+
+State TimeStepper::advance_in_parts(const State& old, const core::TimeStep& now, int halvings,
+                                    bool ends)
+{
+  const core::Stopwatch watch;
+  StepResult result =
+      now.is_static ? simulation_->equilibrium(old, now) : simulation_->step(old, now);
+  if (result.state) {
+    ++simulation_->ledger().steps;
+    ++at_.accepted;
+    at_.nominal += ends ? 1 : 0;
+    at_.whole = ends;
+    at_.seconds = simulation_->space().comm().max(watch.seconds());
+    observer_->accepted(*result.state, result.report, at_);
+    return std::move(*result.state);
+  }
+  ++simulation_->ledger().rejected_steps;
+  observer_->rejected(now.t, result.why);
+  if (halvings == most_halvings)
+    throw core::solver_error("at t = " + core::shown(old.t) + " s: " + result.why +
+                             " (the step was halved " + std::to_string(halvings) + " times)");
+  core::TimeStep half = now;
+  half.h = 0.5 * now.h;
+  half.t = now.t - half.h;
+  const State middle = advance_in_parts(old, half, halvings + 1, false);
+  half.t = now.t;
+  return advance_in_parts(middle, half, halvings + 1, ends);
+}
+
+}  // namespace trocar::step

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+
+#include "step/simulation.hpp"
+
+namespace trocar::step {
+
+/// Where a run has come to with an accepted step.
+struct Progress
+{
+  int accepted = 0;      ///< steps so far, parts of halved ones each for itself; 0: the start
+  long nominal = 0;      ///< steps of full length that are done
+  bool whole = true;     ///< one of these has just ended; false between the parts of one
+  double seconds = 0.0;  ///< wall time of this step, the longest of all ranks
+};
+
+/// Is told how a run goes. Everything is called on every rank.
+class Observer
+{
+ public:
+  virtual ~Observer() = default;
+  virtual void accepted(const State& state, const StepReport& report, const Progress& at) = 0;
+  virtual void rejected(double t, const std::string& why) = 0;
+};
+
+/// Takes a simulation through time: equal steps to the end, each in halves when it is rejected, at
+/// most 8 times over.
+class TimeStepper
+{
+ public:
+  /// Borrows both.
+  TimeStepper(Simulation& simulation, Observer& observer)
+      : simulation_(&simulation), observer_(&observer)
+  {
+  }
+
+  /// The state before the first step. Failure (70) when there is none. Collective.
+  State start();
+  /// From the start to the end of the scene. Failure (70) when a step is rejected however short it
+  /// is. Collective.
+  State run(State state);
+  /// One step of full length. Failure (70) likewise. Collective.
+  State advance(const State& old, const core::TimeStep& now);
+
+ private:
+  State advance_in_parts(const State& old, const core::TimeStep& now, int halvings, bool ends);
+
+  Simulation* simulation_;
+  Observer* observer_;
+  Progress at_;
+};
+
+}  // namespace trocar::step
