@@ -134,6 +134,8 @@ class Cavities
   /// Rows of linear and follower cavities at the iterate u. Collective.
   CavityRows add_rows(const State& state, const Shape& shape, const OwnedField& u,
                       const TimeStep& now, constraint::Set& set);
+  /// A cavity whose fluid has flowed out whole, of which more than nothing is wanted; -1: none.
+  static int drained(const Fluid& fluid);
   /// Linearises the fluids anew where the multipliers have led; false when they were right.
   bool refresh(const VecX& lambda, CavityRows& rows, constraint::Set& set) const;
   /// Pressures from multipliers, and given ones of this time.

@@ -145,6 +145,13 @@ void Cavities::set_gaps(const CavityRows& rows, constraint::Set& set) const
   }
 }
 
+int Cavities::drained(const Fluid& fluid)
+{
+  for (Eigen::Index i = 0; i < fluid.volume.size(); ++i)
+    if (fluid.compliance(i, i) < 0.0) return static_cast<int>(i);
+  return -1;
+}
+
 bool Cavities::refresh(const VecX& lambda, CavityRows& rows, constraint::Set& set) const
 {
   if (rows.cavity.empty()) return false;
@@ -153,7 +160,13 @@ bool Cavities::refresh(const VecX& lambda, CavityRows& rows, constraint::Set& se
     const int i = rows.cavity[k];
     p[i] = lambda[rows.first + static_cast<Eigen::Index>(k)] / walls_[index(i)].area();
   }
-  const Fluid there = fluid(rows.state, p, rows.now);
+  Fluid there = fluid(rows.state, p, rows.now);
+  // Pressures at which a fluid would have flowed out whole lie beyond the answer.
+  constexpr int most_halvings = 30;
+  for (int k = 0; k < most_halvings && drained(there) >= 0; ++k) {
+    p = 0.5 * (p + rows.pressure);
+    there = fluid(rows.state, p, rows.now);
+  }
   const VecX expected = rows.fluid.volume - rows.fluid.compliance * (p - rows.pressure);
   bool right = true;
   for (int i : rows.cavity)

@@ -5,6 +5,21 @@
 
 // The rows that couple one needle and the tissue in a step, and what is made of their multipliers.
 namespace trocar::insertion {
+namespace {
+
+/// How far along its way from the first point a tip has passed the last place that may hold the
+/// needle: whole numbers of half edges, and below one its half, quarter, eighth.
+double passed_part(double way, double half)
+{
+  constexpr double least = 1.0 / 8.0;
+  const double halves = way / half + relative_tolerance;
+  if (halves >= 1.0) return half * std::floor(halves);
+  for (double part = 0.5; part >= least; part *= 0.5)
+    if (halves >= part) return half * part;
+  return 0.0;
+}
+
+}  // namespace
 
 double Insertion::depth(const InsertionState& state) const
 {
@@ -147,17 +162,19 @@ PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, co
 }
 
 /// A needle that one point alone holds could turn about it, until its tip meets the next place for
-/// one. Until then the last half edge that the tip has passed holds it as well: a material
-/// place, that does not go along with the tip. Returns the first of two rows; -1: none is passed.
+/// one. Until then the last half edge that the tip has passed, or within the first one a part of
+/// it, holds it as well: a material place, that does not go along with the tip. Returns the first
+/// of two rows; -1: none is passed.
 int Insertion::add_lever_rows(const InsertionState& state, const needle::Shaft& shaft,
                               const Deformed& tissue, int body, constraint::Set& set) const
 {
   const Site& held = state.path.sites[static_cast<std::size_t>(state.points.front().site)];
   const double half = 0.5 * local_edge(*mesh_, held.tet);
-  const double passed = std::floor((state.tip_arc - held.arc) / half + relative_tolerance);
-  if (passed < 1.0) return -1;
-  const std::optional<Site> tip = site_at(state.path, *mesh_, held.arc + passed * half);
-  if (!tip || tip->arc - held.arc < 0.5 * half) return -1;  // the way is mostly through a void
+  const double passed = passed_part(state.tip_arc - held.arc, half);
+  if (passed == 0.0) return -1;
+  const std::optional<Site> tip = site_at(state.path, *mesh_, held.arc + passed);
+  if (!tip || tip->arc - held.arc < 0.5 * std::min(passed, half))
+    return -1;  // the way is mostly through a void
   const Vec3 p = tissue.position(tip->anchor);
   const needle::ShaftPoint on_shaft = needle::project(shaft, p);
   constraint::Row row;

@@ -74,26 +74,38 @@ Mat3 Needle::rotary_inertia(int node, const Mat3& R) const
   return R * axes.asDiagonal() * R.transpose();
 }
 
+VecX Needle::weight_and_inertia(const NeedleState& old, const NeedleState& at,
+                                const core::TimeStep& step) const
+{
+  VecX force(dofs());
+  const core::Rates rate = step.rates();
+  for (int i = 0; i <= settings_.elements; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double mass = nodal_mass(i);
+    const Mat3& R = at.shaft.R[n];
+    const Vec3 v = rate.velocity * (at.shaft.x[n] - old.shaft.x[n]);
+    const Vec3 w = rate.velocity * core::rotation_log(R * old.shaft.R[n].transpose());
+    force.segment<3>(6 * i) =
+        step.load * mass * settings_.gravity - mass * rate.acceleration * (v - old.v[n]);
+    force.segment<3>(6 * i + 3) = -rate.acceleration * rotary_inertia(i, R) * (w - old.w[n]);
+  }
+  return force;
+}
+
 Linearised Needle::linearise(const NeedleState& old, const NeedleState& iterate,
                              const core::TimeStep& step) const
 {
   Linearised linear;
   const Shaft& shaft = iterate.shaft;
   linear.A = MatX::Zero(dofs(), dofs());
-  linear.r = VecX::Zero(dofs());
+  linear.r = weight_and_inertia(old, iterate, step);
   const core::Rates rate = step.rates();
   for (int i = 0; i <= settings_.elements; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    const double mass = nodal_mass(i);
-    const Mat3 J = rotary_inertia(i, shaft.R[n]);
-    const Vec3 v = rate.velocity * (shaft.x[n] - old.shaft.x[n]);
-    const Vec3 w = rate.velocity * core::rotation_log(shaft.R[n] * old.shaft.R[n].transpose());
-    linear.r.segment<3>(6 * i) =
-        step.load * mass * settings_.gravity - mass * rate.acceleration * (v - old.v[n]);
-    linear.r.segment<3>(6 * i + 3) = -rate.acceleration * J * (w - old.w[n]);
     linear.A.block<3, 3>(6 * i, 6 * i).diagonal().array() +=
-        mass * rate.acceleration * rate.velocity;
-    linear.A.block<3, 3>(6 * i + 3, 6 * i + 3) += rate.acceleration * rate.velocity * J;
+        nodal_mass(i) * rate.acceleration * rate.velocity;
+    linear.A.block<3, 3>(6 * i + 3, 6 * i + 3) +=
+        rate.acceleration * rate.velocity * rotary_inertia(i, shaft.R[n]);
   }
   if (settings_.model == Model::rigid) {
     linear.held = dofs();
@@ -137,6 +149,20 @@ NeedleState Needle::correct(const NeedleState& old, const NeedleState& iterate,
         step.rates().velocity * core::rotation_log(next.shaft.R[n] * old.shaft.R[n].transpose());
   }
   return next;
+}
+
+VecX Needle::residual(const NeedleState& old, const NeedleState& at,
+                      const core::TimeStep& step) const
+{
+  VecX r = weight_and_inertia(old, at, step);
+  if (settings_.model == Model::rigid) return r;
+  const Shaft& shaft = at.shaft;
+  for (std::size_t e = 0; e + 1 < shaft.x.size(); ++e)
+    r.segment<12>(6 * static_cast<Eigen::Index>(e)) -=
+        corotational_beam(element_stiffness_, shaft.element_length(), {shaft.x[e], shaft.R[e]},
+                          {shaft.x[e + 1], shaft.R[e + 1]})
+            .force;
+  return r;
 }
 
 double Needle::relative_increment(const Linearised& linear, const VecX& coupling) const

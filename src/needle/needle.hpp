@@ -82,6 +82,8 @@ class Needle
   /// Adds the increment of λ: `coupling` is H_nᵀλ on all dofs.
   NeedleState correct(const NeedleState& old, const NeedleState& iterate, const Linearised& linear,
                       const VecX& coupling, const core::TimeStep& step) const;
+  /// Weight less internal and inertia forces at a shape, `Linearised::r` without the rest.
+  VecX residual(const NeedleState& old, const NeedleState& at, const core::TimeStep& step) const;
   /// Size of the increment that λ leaves to be made, rotations times the length, over the length.
   double relative_increment(const Linearised& linear, const VecX& coupling) const;
   /// The holder's wrench in the linearised balance that `correct` satisfies.
@@ -91,6 +93,8 @@ class Needle
   Energy energy(const NeedleState& old, const NeedleState& next) const;
 
  private:
+  VecX weight_and_inertia(const NeedleState& old, const NeedleState& at,
+                          const core::TimeStep& step) const;
   VecX increment(const Linearised& linear, const VecX& coupling) const;
   Mat3 rotary_inertia(int node, const Mat3& R) const;
   double nodal_mass(int node) const;

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "step/simulation.hpp"
 #include "law/immovable.hpp"
 #include "law/solve.hpp"
+#include "step/simulation.hpp"
 
 // 3 to 5 of the step: rows, the dense problem, the correction.
 namespace trocar::step {
@@ -26,7 +26,7 @@ Simulation::Pass Simulation::constrained_step(const State& past, const core::Tim
     pass.rows.of_cavities =
         cavities_->add_rows(next.cavities, walls, next.tissue.u, now, pass.rows.set);
   pass.probes = pass.rows.set.probes();
-  pass.tolerance = lag_tolerance(now, residual, !pass.rows.set.empty());
+  pass.tolerance = lag_tolerance(now, residual, !pass.rows.set.empty(), report.linearisations > 0);
   const fem::OwnedField start = next.tissue.u;  // where the gaps are measured from
   if (last.size() != pass.rows.set.size()) last = pass.rows.set.starts();
   const bool stale =
@@ -143,11 +143,13 @@ tissue::Push Simulation::push_of(const Pass& pass) const
 /// well beyond what the last one left, or one sweep with an older factor would pass for it again
 /// and again and lead nowhere. Under pressures that follow it does so by the square of that, so
 /// that Newton's rate is kept.
-double Simulation::lag_tolerance(const core::TimeStep& now, double residual, bool rows) const
+double Simulation::lag_tolerance(const core::TimeStep& now, double residual, bool rows,
+                                 bool goes_on) const
 {
   constexpr double least = 1e-10, part = 0.1;
   const bool follows = cavities_ && cavities_->follows();
-  const bool iterated = now.is_static || scene_.time.newton_max > 1;
+  const int told = scene_.time.newton_max;
+  const bool iterated = now.is_static || told > 1 || (told == 0 && goes_on);
   const double lag = scene_.tissue.lag_tolerance;
   const double leads_on = follows ? 1e-4 : std::max(lag, iterated ? 1e-4 : 0.0);
   if (!(follows || (iterated && rows)) || !std::isfinite(residual)) return leads_on;

@@ -20,8 +20,9 @@ Simulation::Effort Simulation::effort_of(const core::TimeStep& now) const
   const int told = scene_.time.newton_max;
   if (told > 1) return {told, 0.0, tolerance, true};
   const double any = std::numeric_limits<double>::max();  // but what is not finite
-  if (told == 1 || !bends) return {1, any, any, bends};
-  return {most, automatic_first, automatic, true};
+  if (told == 1 || !(bends || beams())) return {1, any, any, bends};
+  // Linear tissue is balanced by one solve; beams beside it bend, and their rows turn.
+  return {most, automatic_first, automatic, bends};
 }
 
 Simulation::Place Simulation::place_of(const State& past, const core::TimeStep& now,
@@ -40,8 +41,9 @@ bool Simulation::enough(const State& past, const State& next, const cavity::Shap
                         const Iterate& before, double& residual, StepReport& report) const
 {
   const Effort effort = effort_of(now);
-  report.unbalanced = balance.worst;
-  if (report.linearisations == 1 && balance.worst <= effort.first && effort.first > 0.0)
+  const double across = beams() ? left_across(past, next, now, pass) : 0.0;
+  report.unbalanced = std::max(balance.worst, across);
+  if (report.linearisations == 1 && effort.first > 0.0 && report.unbalanced <= effort.first)
     return true;
   double increment = 0.0;
   for (std::size_t i = 0; i < needles_.size(); ++i) {
@@ -54,6 +56,7 @@ bool Simulation::enough(const State& past, const State& next, const cavity::Shap
   }
   residual = std::max(balance.norm, increment);
   if (!(std::max(balance.worst, increment) <= effort.later)) return false;
+  if (effort.first > 0.0 && !(across <= effort.later)) return false;
   // Sums over stiff parts are rounded: as long as it helps, the residual is refined.
   if (now.is_static && !balance.carries(effort.later) && balance.lost < 0.5 * before.lost)
     return false;
@@ -62,7 +65,55 @@ bool Simulation::enough(const State& past, const State& next, const cavity::Shap
   return gaps_closed(now, next, pass);
 }
 
-// The rows turn with the shaft: the gaps of the new geometry must be closed as well.
+bool Simulation::beams() const
+{
+  return std::any_of(needles_.begin(), needles_.end(), [](const needle::Needle& one) {
+    return one.settings().model == needle::Model::beam;
+  });
+}
+
+/// What another linearisation would change of the forces that beams are held with, as a part of the
+/// largest of each: the gaps of the rows in the new geometry, and what the beams' own rest makes of
+/// them with the factor they had. Along a beam a change of place far below those is a huge force,
+/// but one that nothing else feels.
+double Simulation::left_across(const State& past, const State& next, const core::TimeStep& now,
+                               const Pass& pass) const
+{
+  constexpr double part = 1e-6;  // below which of a gap that is closed anyway nothing is asked
+  const Rows again = coupling_rows(now, next);
+  std::vector<core::VecX> d;
+  for (std::size_t b = 0; b < needles_.size(); ++b) {
+    const constraint::SmallBody& body = pass.needles[b];
+    const Eigen::Index dofs = body.free_increment.size();
+    d.push_back(core::VecX::Zero(body.held + dofs));
+    if (dofs == 0) continue;
+    core::VecX r = needles_[b].residual(past.needles[b], next.needles[b], now);
+    if (!pass.levers.empty()) r -= pass.levers[b];
+    d.back().tail(dofs) = body.factor.solve(core::VecX(r.tail(dofs)));
+  }
+  std::vector<double> largest(needles_.size(), 0.0);
+  const auto held = [](const constraint::Row& row) {
+    return row.body >= 0 && row.kind == law::RowKind::bilateral && row.relative_softness == 0.0;
+  };
+  for (int i = 0; i < again.set.size(); ++i) {
+    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+    double& most = largest[static_cast<std::size_t>(std::max(row.body, 0))];
+    if (held(row)) most = std::max(most, std::abs(pass.lambda.lambda[i]));
+  }
+  double worst = 0.0;
+  for (int i = 0; i < again.set.size(); ++i) {
+    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+    if (!held(row) || !(pass.mobility[i] > 0.0)) continue;
+    const auto b = static_cast<std::size_t>(row.body);
+    double gap = row.gap + row.softness * pass.lambda.lambda[i];
+    for (const auto& [dof, coefficient] : row.lever) gap -= coefficient * d[b][dof];
+    const double least = 10.0 * scene_.laws.tolerance / part;
+    worst = std::max(worst, std::abs(gap) / (pass.mobility[i] * largest[b] + least));
+  }
+  return worst;
+}
+
+/// The rows turn with the shaft: the gaps of the new geometry must be closed as well.
 bool Simulation::gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const
 {
   constexpr double no_gap = 1e-12;  // [m], of places that are known to a part in 1e14
@@ -90,7 +141,7 @@ bool Simulation::lead_on(const State& past, const core::TimeStep& now, const Pas
   if (before.slow >= most_slow) tissue_.take_exact();
   const bool overshoots = rest > std::max(before.unbalanced, effort.later);
   if (!upright || overshoots) {
-    if (effort.most == 1) return false;
+    if (effort.most == 1 || !effort.measured) return false;
     if (!shorten(past, now, upright, before, here.forces, walls, next, rest)) return false;
   }
   before.forces = std::move(here.forces);

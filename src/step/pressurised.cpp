@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "step/simulation.hpp"
 #include "law/solve.hpp"
+#include "step/simulation.hpp"
 
 // What cavities do in a step beside their rows: forces, and the frozen model's search for pressures
 // around the laws of all other rows.

@@ -53,6 +53,9 @@ std::string Simulation::place_of_row(const Pass& pass, int row) const
   if (one.wide >= 0) {
     const int k = row - pass.rows.of_cavities.first;
     const int cavity = pass.rows.of_cavities.cavity[static_cast<std::size_t>(k)];
+    if (cavity::Cavities::drained(pass.rows.of_cavities.fluid) == cavity)
+      return "cavity '" + scene_.cavities.cavities[static_cast<std::size_t>(cavity)].name +
+             "': more fluid would flow out within the step than there is";
     return "cavity '" + scene_.cavities.cavities[static_cast<std::size_t>(cavity)].name +
            "': its wall is held all over";
   }

@@ -37,8 +37,7 @@ Simulation::Simulation(const Scene& scene, const base::Comm& comm)
 
 void Simulation::prepare()
 {
-  const bool is_static =
-      scene_.time.is_static || scene_.time.start_in_equilibrium;
+  const bool is_static = scene_.time.is_static || scene_.time.start_in_equilibrium;
   core::TimeStep first{0.0, scene_.time.step, is_static};
   State unused;
   Differenced velocity;
@@ -141,6 +140,7 @@ try {
   fem::Load load;
   if (cavities_) load = cavities_->load(next.cavities, walls, now);
   const bool goes_on = report.linearisations > 0;
+  const fem::OwnedField iterate = next.tissue.u;
   tissue::FreeMotion tissue =
       tissue_.free_motion(past.tissue, next.tissue.u, now, load, goes_on);  // 2 each body alone
   if (tissue.trouble && tissue_.drop_exact())
@@ -153,6 +153,10 @@ try {
     if (!pass.trouble) walls = walls_of(next);
     if (pass.trouble || pass.rows.set.empty() || turn == scene_.time.direction_max) break;
     if (gaps_closed(now, next, pass)) break;
+  }
+  if (pass.trouble && tissue_.drop_exact()) {  // with the factor of a rotated one it could begin
+    next.tissue.u = iterate;
+    return linearised_step(past, now, residual, walls, next, last, report);
   }
   if (pass.trouble) return pass;
   pass.folded = tissue_.folded(next.tissue.u);

@@ -99,9 +99,9 @@ class Simulation
   struct Effort
   {
     int most;       ///< linearisations
-    double first;   ///< Balance::worst at which one will do; 0: never
+    double first;   ///< what is unbalanced at which one will do; 0: never
     double later;   ///< and which ends the others
-    bool measured;  ///< whether the balance is looked at
+    bool measured;  ///< whether the balance of the tissue is looked at
   };
 
   Differenced velocity_of(const State& state, double h) const;
@@ -126,6 +126,9 @@ class Simulation
                              const core::TimeStep& now) const;
   void advance_cavities(const State& old, State& next) const;
   cavity::Shape walls_of(const State& state) const;
+  bool beams() const;
+  double left_across(const State& past, const State& next, const core::TimeStep& now,
+                     const Pass& pass) const;
   bool gaps_closed(const core::TimeStep& now, const State& next, const Pass& pass) const;
   std::optional<std::string> move_needles(const State& old, const core::TimeStep& now,
                                           State& next) const;
@@ -142,7 +145,7 @@ class Simulation
                StepReport& report);
   static core::VecX more_forces(const tissue::FreeMotion& motion, const Pass& pass);
   tissue::Push push_of(const Pass& pass) const;
-  double lag_tolerance(const core::TimeStep& now, double residual, bool rows) const;
+  double lag_tolerance(const core::TimeStep& now, double residual, bool rows, bool goes_on) const;
   Effort effort_of(const core::TimeStep& now) const;
   Place place_of(const State& past, const core::TimeStep& now, const Pass& pass,
                  const cavity::Shape& walls, const State& next);

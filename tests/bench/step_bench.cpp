@@ -104,8 +104,7 @@ Course lagged(step::Scene scenario, double tolerance, const base::Comm& comm)
 }
 
 /// The last steps of a course again, from the same states, by other means.
-Course again(step::Scene scenario, const Course& model, std::size_t steps,
-             const base::Comm& comm)
+Course again(step::Scene scenario, const Course& model, std::size_t steps, const base::Comm& comm)
 {
   scenario.tissue.lag_tolerance = 0.0;
   step::Simulation simulation(scenario, comm);

@@ -128,8 +128,8 @@ STUCK = [
 
 
 def held_needle():
-    """The first step of a bending needle that sits in a block and is pushed and turned. The values
-    are of inertia M/h^2; a step that sets out from a start has h/2 for one of the two lengths
+    """The first step of a bending needle that sits in a block and is pushed and turned, linearised
+    once. The values are of inertia M/h^2; a step that sets out from a start has h/2 for one of the two lengths
     (docs/theory.md section 1), which is twice the mass. So the block gets half the density, and
     twice the gravity and mass damping, for the same weight and damping."""
     for friction, force, slipping in STUCK:
@@ -138,7 +138,8 @@ def held_needle():
             "-tissue_model": "linear", "-tissue_element": "p1", "-tissue_young": "6000",
             "-tissue_poisson": "0.4", "-tissue_density": "500", "-tissue_rayleigh_mass": "2",
             "-tissue_rayleigh_stiffness": "0.01", "-gravity": "0,0,-19.62", "-fix": "z0",
-            "-time_step": "0.02", "-time_end": "0.02", "-needles": "n", "-needle_model": "beam",
+            "-time_step": "0.02", "-time_end": "0.02", "-time_newton_max": "1", "-needles": "n",
+            "-needle_model": "beam",
             "-needle_entry": "0,0.0213,0.0187", "-needle_direction": "1,0.08,-0.05",
             "-needle_length": "0.08", "-needle_radius": "0.0005",
             "-needle_inner_radius": "0.0002", "-needle_young": "2e9", "-needle_poisson": "0.3",

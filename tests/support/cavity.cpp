@@ -16,8 +16,7 @@ void add_surface(mesh::Mesh& mesh, const std::string& name,
   mesh.surfaces.push_back(std::move(surface));
 }
 
-step::Scene fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
-                              cavity::Model model)
+step::Scene fluid_filled(mesh::Mesh mesh, const tissue::Material& material, cavity::Model model)
 {
   step::Scene scenario;
   scenario.mesh = std::move(mesh);

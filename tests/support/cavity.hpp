@@ -13,14 +13,13 @@ void add_surface(mesh::Mesh& mesh, const std::string& name,
 
 /// Linear tissue of one material around one cavity "fluid" whose wall is the surface "wall": one
 /// equilibrium, supports and law left to the test.
-step::Scene fluid_filled(mesh::Mesh mesh, const tissue::Material& material,
-                              cavity::Model model);
+step::Scene fluid_filled(mesh::Mesh mesh, const tissue::Material& material, cavity::Model model);
 
 /// A block of n³ cells of edge 1 cm, held below, with a void in the middle (surface "wall") of
 /// `hole` cells each way, and one cavity "bladder" of constant volume. Static, linear tissue, no
 /// needle.
 step::Scene cavity_scenario(int n, int hole, cavity::Model model,
-                                 cavity::Solver solver = cavity::Solver::newton);
+                            cavity::Solver solver = cavity::Solver::newton);
 
 /// A plate bonded to the top that presses by this part of the block's height.
 void press(step::Scene& scenario, double depth);

@@ -86,8 +86,7 @@ TEST(LameTube, ComplianceWithCapsConverges)
   const double a = 0.01, b = 0.025, p = 1.0;
   std::vector<double> error;
   for (int n : {1, 2, 4}) {
-    step::Scene scenario =
-        statics(test::tube(8 * n, n, 3 * n, a, b, 0.008), cavity::Model::linear);
+    step::Scene scenario = statics(test::tube(8 * n, n, 3 * n, a, b, 0.008), cavity::Model::linear);
     scenario.tissue.boundary.fixed = {{"ends", 4}, {"on_x", 2}, {"on_y", 1}};
     scenario.cavities.cavities[0].caps = true;
     give_pressure(scenario, p);
@@ -201,8 +200,7 @@ TEST(FollowerSphere, LimitPoint)
 // it holds: the step is refused with that reason.
 TEST(FrozenTube, LosesItsRoot)
 {
-  step::Scene scenario =
-      statics(test::tube(16, 2, 6, 0.01, 0.025, 0.008), cavity::Model::frozen);
+  step::Scene scenario = statics(test::tube(16, 2, 6, 0.01, 0.025, 0.008), cavity::Model::frozen);
   scenario.tissue.boundary.fixed = {{"ends", 4}, {"on_x", 2}, {"on_y", 1}};
   cavity::CavitySettings& one = scenario.cavities.cavities[0];
   one.solver = cavity::Solver::exact;

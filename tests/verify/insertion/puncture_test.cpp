@@ -68,8 +68,7 @@ TEST(Puncture, TheTipLeavesASurfaceItDidNotPunctureWithoutPulling)
 double indentation(int cells, double radius, double poisson)
 {
   const double edge = 0.1;
-  step::Scene scenario =
-      test::needle_scenario({cells, cells, cells, Vec3(edge, edge, edge), 0.0});
+  step::Scene scenario = test::needle_scenario({cells, cells, cells, Vec3(edge, edge, edge), 0.0});
   scenario.tissue.materials = {{5000.0, poisson, 1000.0, 0.0, 0.0}};
   scenario.tissue.boundary.fixed = {{"x1", 7}};
   scenario.time.is_static = true;

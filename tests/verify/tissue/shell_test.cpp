@@ -17,8 +17,7 @@ constexpr double a = 0.011, b = 0.025, E = 15000.0;
 
 step::Scene sphere(mesh::Mesh mesh, double poisson, cavity::Model model)
 {
-  step::Scene scenario =
-      test::fluid_filled(std::move(mesh), {E, poisson, 1000.0, 0.0, 0.0}, model);
+  step::Scene scenario = test::fluid_filled(std::move(mesh), {E, poisson, 1000.0, 0.0, 0.0}, model);
   scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
   return scenario;
 }

@@ -104,9 +104,8 @@ TEST(Stress, LameShellConverges)
   };
   std::vector<double> of_tets, of_nodes, effectivity;
   for (int levels : {1, 2, 3}) {
-    step::Scene scenario =
-        test::fluid_filled(test::shell(levels, 3 << (levels - 1), a, b), {E, nu, 1000.0, 0.0, 0.0},
-                           cavity::Model::linear);
+    step::Scene scenario = test::fluid_filled(test::shell(levels, 3 << (levels - 1), a, b),
+                                              {E, nu, 1000.0, 0.0, 0.0}, cavity::Model::linear);
     scenario.tissue.boundary.fixed = {{"on_x", 6}, {"on_y", 5}, {"on_z", 3}};
     cavity::CavitySettings& fluid = scenario.cavities.cavities[0];
     fluid.fluid.kind = law::FluidLaw::Kind::pressure;
