@@ -198,10 +198,16 @@ OwnedField Cavities::forces(const State& state, const Shape& shape, const TimeSt
 
 void Cavities::hold_volume(int cavity, double volume, State& state)
 {
-  settings_.cavities[index(cavity)].fluid.kind = law::FluidLaw::Kind::constant_volume;
   CavityState& mine = state.cavity[index(cavity)];
+  mine.held = true;
   mine.given = false;
   mine.amount = volume;
+}
+
+const law::FluidLaw& Cavities::law_of(int i, const State& state) const
+{
+  static const law::FluidLaw constant_volume;
+  return state.cavity[index(i)].held ? constant_volume : settings_.cavities[index(i)].fluid;
 }
 
 }  // namespace trocar::cavity

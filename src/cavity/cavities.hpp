@@ -9,6 +9,7 @@
 #include "cavity/wall.hpp"
 #include "constraint/set.hpp"
 #include "core/ledger.hpp"
+#include "core/outcome.hpp"
 #include "core/time_step.hpp"
 #include "fem/load.hpp"
 
@@ -26,6 +27,20 @@ struct CavityState
   double start_pressure = 0.0;  ///< [Pa]
   double reference = 0.0;       ///< pressure at which the fluid takes its amount [Pa]
   bool given = false;           ///< the pressure is given: always, or only at the start
+  bool held = false;            ///< the amount is held whatever the fluid (P-V curves)
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("pressure", "Pa", self.pressure);
+    v("amount", "m^3", self.amount);
+    v("whole", "m^3", self.whole);
+    v("start_pressure", "Pa", self.start_pressure);
+    v("reference", "Pa", self.reference);
+    v("given", "1", self.given);
+    v("held", "1", self.held);
+  }
 };
 
 struct EdgeState
@@ -35,12 +50,31 @@ struct EdgeState
   double channel = 0.0;    ///< tissue that it went through up to the wall [m]
   double flow = 0.0;       ///< [m³/s]
   double moved = 0.0;      ///< since the start [m³]
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("pierced", "1", self.pierced);
+    v("needle_in", "1", self.needle_in);
+    v("channel", "m", self.channel);
+    v("flow", "m^3/s", self.flow);
+    v("moved", "m^3", self.moved);
+  }
 };
 
 struct State
 {
   std::vector<CavityState> cavity;
   std::vector<EdgeState> edge;
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("cavity", "", self.cavity);
+    v("edge", "", self.edge);
+  }
 };
 
 /// A stretch of a needle's path that lies in no tissue.
@@ -78,13 +112,6 @@ struct PressureAnswers
 {
   std::vector<OwnedField> per_p;  ///< displacement per unit of every one [m/Pa]
   VecX gain;                      ///< K_p of the proportional solver [Pa]
-};
-
-/// Pressures of frozen cavities, or why there are none.
-struct NextPressures
-{
-  VecX p;  ///< [Pa]
-  std::optional<std::string> trouble{};
 };
 
 /// What one cavity did in a step.
@@ -150,9 +177,10 @@ class Cavities
   // Cavities of the frozen model: their pressures are found outside the constraint system.
   std::vector<int> frozen(const State& state) const;
   OwnedField unit_load(int cavity) const;  ///< g_0 [m²]: force of a unit pressure
-  /// Next pressures of the frozen cavities from where the walls are. Collective.
-  NextPressures next_pressures(const State& state, const Shape& shape,
-                               const PressureAnswers& answers, const TimeStep& now) const;
+  /// Next pressures of the frozen cavities from where the walls are [Pa]; refused where there are
+  /// none. Collective.
+  core::Outcome<VecX> next_pressures(const State& state, const Shape& shape,
+                                     const PressureAnswers& answers, const TimeStep& now) const;
   static void set_pressures(const std::vector<int>& which, const VecX& p, State& state);
   int most_updates() const;   ///< of pressures in one step
   bool proportional() const;  ///< the solver of the frozen cavities
@@ -160,10 +188,11 @@ class Cavities
   /// per unit pressure, everything else at rest. Collective.
   double line_gain(int cavity, const OwnedField& per_p) const;
   /// For P-V curves: the cavity holds this volume, whatever its law. Not collective.
-  void hold_volume(int cavity, double volume, State& state);
+  static void hold_volume(int cavity, double volume, State& state);
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  const law::FluidLaw& law_of(int i, const State& state) const;
   law::Edge edge(int e, const State& state, double t) const;
   law::Flows flows(const State& state, const VecX& p, double t) const;
   double amount_at_reference(int i, const State& state, double at_zero) const;

@@ -104,17 +104,18 @@ Cavities::Miss Cavities::miss(const State& state, const std::vector<int>& which,
   return miss;
 }
 
-NextPressures Cavities::next_pressures(const State& state, const Shape& shape,
-                                       const PressureAnswers& answers, const TimeStep& now) const
+core::Outcome<VecX> Cavities::next_pressures(const State& state, const Shape& shape,
+                                             const PressureAnswers& answers,
+                                             const TimeStep& now) const
 {
-  if (proportional()) return {proportional_step(state, shape, answers.gain, now)};
+  if (proportional()) return proportional_step(state, shape, answers.gain, now);
   const std::vector<int> which = frozen(state);
   const bool to_the_root = settings_.cavities[index(which.front())].solver == Solver::exact;
   const std::vector<law::VolumeCubic> curves = cubics(which, shape, answers.per_p);
   const VecX p = pressures(state)(which);
-  const auto trouble = [&](const Miss& here, const std::string& what) -> NextPressures {
+  const auto refused = [&](const Miss& here, const std::string& what) {
     const int cavity = which[static_cast<std::size_t>(here.at)];
-    return {p, "cavity '" + settings_.cavities[index(cavity)].name + "': " + what};
+    return core::Refusal{"cavity '" + settings_.cavities[index(cavity)].name + "': " + what};
   };
   VecX change = VecX::Zero(p.size()), step = change;
   double before = std::numeric_limits<double>::infinity();
@@ -126,13 +127,13 @@ NextPressures Cavities::next_pressures(const State& state, const Shape& shape,
       step *= 0.5;
       change -= step;
       if (step.norm() <= 1e-12 * (p.norm() + change.norm()))
-        return trouble(here, "no pressure gives its fluid's volume");
+        return refused(here, "no pressure gives its fluid's volume");
       continue;
     }
     // V must grow with the pressure on the way from the last one.
     const MatX symmetric = 0.5 * (here.slope + here.slope.transpose());
     if (!core::Cholesky(symmetric).regular())
-      return trouble(here,
+      return refused(here,
                      "its volume does not grow with the pressure any more (limit point near p = " +
                          core::shown(p[here.at] + change[here.at]) + " Pa)");
     before = here.worst;
@@ -140,7 +141,7 @@ NextPressures Cavities::next_pressures(const State& state, const Shape& shape,
     change += step;
     if (!to_the_root) break;
   }
-  return {p + change};
+  return VecX(p + change);
 }
 
 double Cavities::line_gain(int cavity, const OwnedField& per_p) const

@@ -39,8 +39,8 @@ law::Flows Cavities::flows(const State& state, const VecX& p, double t) const
   for (int e = 0; e < static_cast<int>(settings_.edges.size()); ++e) {
     law::Edge one = edge(e, state, t);
     for (int end : {one.from, one.to}) {
-      if (end < 0 || !settings_.cavities[index(end)].fluid.compressible()) continue;
-      const law::FluidLaw& carried = settings_.cavities[index(end)].fluid;
+      if (end < 0 || !law_of(end, state).compressible()) continue;
+      const law::FluidLaw& carried = law_of(end, state);
       one.density_from = carried.density(one.from >= 0 ? p[one.from] : 0.0);
       one.density_to = carried.density(one.to >= 0 ? p[one.to] : 0.0);
     }
@@ -52,7 +52,7 @@ law::Flows Cavities::flows(const State& state, const VecX& p, double t) const
 /// An amount at p = 0 as the cavity counts its own, at its reference pressure [m³].
 double Cavities::amount_at_reference(int i, const State& state, double at_zero) const
 {
-  return at_zero / settings_.cavities[index(i)].fluid.density(state.cavity[index(i)].reference);
+  return at_zero / law_of(i, state).density(state.cavity[index(i)].reference);
 }
 
 // ∂V_law,i/∂p_j of the network is h L_ij / ρ_i with its Laplacian L and the densities ρ. In the
@@ -68,7 +68,7 @@ Fluid Cavities::fluid(const State& state, const VecX& p, const TimeStep& now) co
   VecX root = VecX::Ones(size());  // of the densities
   for (int i = 0; i < size(); ++i) {
     const CavityState& mine = state.cavity[index(i)];
-    const law::FluidLaw& law = settings_.cavities[index(i)].fluid;
+    const law::FluidLaw& law = law_of(i, state);
     const double V0 = walls_[index(i)].volume();
     const double more = flowing ? amount_at_reference(i, state, now.h * network.inflow[i]) : 0.0;
     const auto answer = law.at(p[i], mine.amount + more, mine.reference);

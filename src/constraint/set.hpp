@@ -28,6 +28,14 @@ struct Anchor
       sum += weight[static_cast<Eigen::Index>(a)] * value(node[a]);
     return sum;
   }
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("node", "1", self.node);
+    v("weight", "1", self.weight);
+  }
 };
 
 /// One constraint row: δ = gap + direction·u(anchor) - h·w, where w are the increments of the

@@ -10,25 +10,24 @@
 
 namespace trocar::driver {
 
-Log::Log(const step::Simulation& simulation, const Scenario& scenario)
-    : simulation_(&simulation), scenario_(&scenario)
+Log::Log(const step::Model& model, const Scenario& scenario) : model_(&model), scenario_(&scenario)
 {
 }
 
 bool Log::speaks() const
 {
-  return simulation_->space().comm().root() && !scenario_->output.quiet;
+  return model_->space.comm().root() && !scenario_->output.quiet;
 }
 
 void Log::plan() const
 {
-  const double bytes = simulation_->tissue().memory_bytes();
+  const double bytes = model_->tissue.memory_bytes();
   if (speaks() && bytes > 0.0) std::printf("tissue solver: about %.0f MB\n", 1e-6 * bytes);
 }
 
 void Log::set_up(double seconds) const
 {
-  const std::string solver = simulation_->tissue().describe_solver();
+  const std::string solver = model_->tissue.describe_solver();
   if (!speaks()) return;
   const Scenario& scenario = *scenario_;
   const mesh::Mesh& mesh = scenario.mesh;
@@ -40,7 +39,7 @@ void Log::set_up(double seconds) const
   std::printf("  quality: mean %.3f, worst %.3f (tet %lld)\n", q.mean, q.smallest, q.worst_tag);
   for (const std::string& remark : mesh.remarks)
     std::printf("  note: %s\n", core::printable(remark, 400).c_str());
-  std::printf("ranks %d, tissue solver %s, set-up %.2f s\n", simulation_->space().comm().size(),
+  std::printf("ranks %d, tissue solver %s, set-up %.2f s\n", model_->space.comm().size(),
               solver.c_str(), seconds);
   const double rate = base::blas_rate();
   const std::string library = base::blas_library();
@@ -50,7 +49,7 @@ void Log::set_up(double seconds) const
         "warning: the BLAS is slow (%s): install libopenblas0-serial, and set OMP_THREAD_LIMIT=1 "
         "and, on AVX-512 processors, OPENBLAS_CORETYPE=SkylakeX\n",
         library.c_str());
-  if (simulation_->cavities()) cavities(*simulation_->cavities());
+  if (model_->cavities) cavities(*model_->cavities);
   for (const std::string& warning : scenario.warnings)
     std::printf("warning: %s\n", core::printable(warning, 400).c_str());
   std::fflush(stdout);
@@ -169,10 +168,10 @@ void Log::finish() const
 {
   if (!speaks()) return;
   std::printf("work:");
-  for (const auto& [name, count] : simulation_->ledger().entries())
+  for (const auto& [name, count] : model_->ledger.entries())
     if (count != 0)
       std::printf(" %s %lld", std::string(name).c_str(), static_cast<long long>(count));
-  if (!simulation_->needles().empty())
+  if (!model_->needles.empty())
     std::printf("\ndissipated [J]: friction %.4g, cutting %.4g", friction_, cutting_);
   if (scenario_->energy)
     std::printf(

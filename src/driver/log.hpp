@@ -4,7 +4,7 @@
 
 #include "core/stopwatch.hpp"
 #include "driver/scenario.hpp"
-#include "step/simulation.hpp"
+#include "step/step.hpp"
 
 namespace trocar::driver {
 
@@ -13,7 +13,7 @@ class Log
 {
  public:
   /// Borrows both.
-  Log(const step::Simulation& simulation, const Scenario& scenario);
+  Log(const step::Model& model, const Scenario& scenario);
 
   /// What the factor will take, before it does. Collective.
   void plan() const;
@@ -28,7 +28,7 @@ class Log
   void warn_of_supports(const step::State& state);
   bool speaks() const;
 
-  const step::Simulation* simulation_;
+  const step::Model* model_;
   const Scenario* scenario_;
   core::Stopwatch watch_;
   int lines_ = 0;

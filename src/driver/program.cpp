@@ -53,16 +53,15 @@ class RunObserver final : public step::Observer
 };
 
 /// Every step or point of a scenario; gives the last state. Collective.
-step::State run_to_end(step::Simulation& simulation, const Scenario& scenario, Recorder& recorder,
-                       Log& log)
+step::State run_to_end(step::Model& model, const Scenario& scenario, Recorder& recorder, Log& log)
 {
   const bool swept = scenario.pv.has_value();
   RunObserver observer(recorder, log, swept ? 1 : scenario.output.every,
                        step::step_count(scenario.time));
-  step::TimeStepper stepper(simulation, observer);
+  step::TimeStepper stepper(model, observer);
   step::State start = stepper.start();
   if (!swept) return stepper.run(std::move(start));
-  post::PvSweep sweep = post::sweep_volume(simulation, *scenario.pv, start, observer);
+  post::PvSweep sweep = post::sweep_volume(model, *scenario.pv, start, observer);
   report_pv_curve(sweep.curve, recorder, log);
   return std::move(sweep.end);
 }
@@ -74,12 +73,12 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   core::Options options(option_table(), invocation.given);
   const Scenario scenario = read_scenario(options, comm);
   const core::Stopwatch watch;
-  step::Simulation simulation(scenario, comm);
-  simulation.analyse();
-  Log log(simulation, scenario);
+  step::Model model(scenario, comm);
+  model.tissue.analyse();
+  Log log(model, scenario);
   log.plan();
-  simulation.prepare();
-  refuse_unused(simulation.tissue().describe_solver());
+  step::prepare(model);
+  refuse_unused(model.tissue.describe_solver());
   log.set_up(watch.seconds());
   if (scenario.check_only) {
     log.note("check passed: nothing was run");
@@ -87,10 +86,10 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   }
   if (!scenario.output.size_field.empty())
     base::on_root(comm, [&] { io::require_size_field(scenario.output.size_field); });
-  Recorder recorder(simulation, scenario, invocation, options.resolved());
-  if (scenario.output.locking_gauge) report_locking(simulation, recorder, log);
-  const step::State end = run_to_end(simulation, scenario, recorder, log);
-  if (scenario.output.error_estimate) report_error(simulation, scenario.output, end, recorder, log);
+  Recorder recorder(model, scenario, invocation, options.resolved());
+  if (scenario.output.locking_gauge) report_locking(model, recorder, log);
+  const step::State end = run_to_end(model, scenario, recorder, log);
+  if (scenario.output.error_estimate) report_error(model, scenario.output, end, recorder, log);
   recorder.close();
   log.finish();
 }

@@ -42,7 +42,7 @@ std::string build_description()
          build_info::build_type + ", " + build_info::compiler + "), PETSc " + petsc_version();
 }
 
-io::Provenance provenance(const step::Simulation& simulation, const Invocation& invocation,
+io::Provenance provenance(const step::Model& model, const Invocation& invocation,
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver)
 {
@@ -54,7 +54,7 @@ io::Provenance provenance(const step::Simulation& simulation, const Invocation& 
              {"compiler", build_info::compiler},
              {"created_utc", core::utc_now()},
              {"command_line", core::join(invocation.arguments, " ")},
-             {"mpi_ranks", std::to_string(simulation.space().comm().size())},
+             {"mpi_ranks", std::to_string(model.space.comm().size())},
              {"petsc_version", petsc_version()},
              {"hdf5_version", H5_VERS_INFO},
              {"mpi_version", mpi_version()},
@@ -62,8 +62,8 @@ io::Provenance provenance(const step::Simulation& simulation, const Invocation& 
              {"options_file", invocation.options_file_text},
              {"petsc_options", petsc_options()},
              {"tissue_solver", solver},
-             {"mesh_file", simulation.scene().mesh.file},
-             {"mesh_hash_fnv1a", simulation.scene().mesh.hash}};
+             {"mesh_file", model.scene.mesh.file},
+             {"mesh_hash_fnv1a", model.scene.mesh.hash}};
   std::vector<std::string> names, values, units, sources;
   for (const core::ResolvedOption& option : options) {
     names.push_back(option.name);

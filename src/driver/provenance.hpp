@@ -5,7 +5,7 @@
 
 #include "driver/option_source.hpp"
 #include "io/results.hpp"
-#include "step/simulation.hpp"
+#include "step/step.hpp"
 
 namespace trocar::driver {
 
@@ -13,7 +13,7 @@ namespace trocar::driver {
 std::string build_description();
 
 /// What a result file says about where it comes from. `solver` describes the tissue's solver.
-io::Provenance provenance(const step::Simulation& simulation, const Invocation& invocation,
+io::Provenance provenance(const step::Model& model, const Invocation& invocation,
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver);
 

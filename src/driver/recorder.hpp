@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "driver/history.hpp"
 #include "driver/option_source.hpp"
-#include "driver/scenario.hpp"
 #include "io/results.hpp"
-#include "step/simulation.hpp"
+#include "step/step.hpp"
 
 namespace trocar::driver {
 
@@ -15,10 +15,10 @@ namespace trocar::driver {
 class Recorder
 {
  public:
-  /// Borrows simulation and scenario. Makes the result folder on rank 0; Failure (74) on every
+  /// Borrows model and scenario. Makes the result folder on rank 0; Failure (74) on every
   /// rank. Collective.
-  Recorder(const step::Simulation& simulation, const Scenario& scenario,
-           const Invocation& invocation, const std::vector<core::ResolvedOption>& options);
+  Recorder(const step::Model& model, const Scenario& scenario, const Invocation& invocation,
+           const std::vector<core::ResolvedOption>& options);
 
   /// One history row, and a field file when `with_fields`. `step` counts accepted steps.
   /// Collective.
@@ -30,8 +30,9 @@ class Recorder
   void close();  ///< collective
 
  private:
-  const step::Simulation* simulation_;
+  const step::Model* model_;
   const OutputSettings* output_;
+  std::vector<History> histories_;
   std::optional<io::Results> results_;  ///< on rank 0 only
 };
 

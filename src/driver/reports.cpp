@@ -9,10 +9,10 @@
 
 namespace trocar::driver {
 
-void report_locking(const step::Simulation& simulation, Recorder& recorder, const Log& log)
+void report_locking(const step::Model& model, Recorder& recorder, const Log& log)
 {
-  const step::Scene& scene = simulation.scene();
-  const std::vector<double> ratios = post::locking_ratios(scene, simulation.space().comm());
+  const step::Scene& scene = model.scene;
+  const std::vector<double> ratios = post::locking_ratios(scene, model.space.comm());
   for (std::size_t i = 0; i < ratios.size(); ++i)
     log.note("locking gauge: dP/dV of cavity '" + scene.cavities.cavities[i].name + "' is " +
              core::shown(ratios[i]) + " times that of p2_bbar on this mesh");
@@ -31,12 +31,12 @@ void report_pv_curve(const post::PvCurve& curve, Recorder& recorder, const Log& 
            " Pa, R^2 = " + core::shown(curve.r_squared));
 }
 
-void report_error(const step::Simulation& simulation, const OutputSettings& output,
-                  const step::State& state, Recorder& recorder, const Log& log)
+void report_error(const step::Model& model, const OutputSettings& output, const step::State& state,
+                  Recorder& recorder, const Log& log)
 {
-  const step::Scene& scene = simulation.scene();
-  const post::ErrorEstimate estimate = post::estimate_error(
-      scene.mesh, scene.tissue.materials, simulation.tissue().stresses(state.tissue.u));
+  const step::Scene& scene = model.scene;
+  const post::ErrorEstimate estimate = post::estimate_error(scene.mesh, scene.tissue.materials,
+                                                            model.tissue.stresses(state.tissue.u));
   recorder.table("/error_estimate/relative", {estimate.relative}, "1");
   recorder.table("/error_estimate/part", estimate.part, "1");
   const core::VecX of_tet = estimate.errors.cwiseSqrt();
@@ -56,7 +56,7 @@ void report_error(const step::Simulation& simulation, const OutputSettings& outp
         "option -error_size_field: nothing is strained, so there is no error to take sizes from");
   const core::VecX sizes =
       post::wanted_sizes(scene.mesh, estimate.errors, estimate.energy + estimate.sum(), target);
-  base::on_root(simulation.space().comm(),
+  base::on_root(model.space.comm(),
                 [&] { io::write_size_field(output.size_field, scene.mesh, sizes); });
   log.note("  sizes for the next mesh: " + output.size_field +
            " (a background field for Gmsh; scripts/study adapt)");

@@ -26,6 +26,16 @@ struct CouplingPoint
   double needle_arc = 0.0;     ///< arc length on the needle it sticks to [m]; moves only in slip
   bool stuck = true;           ///< at the end of the last step
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("site", "1", self.site);
+    v("needle_arc", "m", self.needle_arc);
+    v("stuck", "1", self.stuck);
+    v("lambda", "N", self.lambda);
+  }
 };
 
 /// How one needle sits in the tissue. A value, equal on every rank.
@@ -39,6 +49,18 @@ struct InsertionState
   TipState tip;
 
   bool touches() const { return tip.pressed || !points.empty(); }  ///< rows are to be made
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("phase", "1", self.phase);
+    v("path", "", self.path);
+    v("tip_arc", "m", self.tip_arc);
+    v("withdrawing", "1", self.withdrawing);
+    v("point", "", self.points);
+    v("tip", "", self.tip);
+  }
 };
 
 /// Shaft friction per length of one tissue in one direction (docs/theory.md section 5).

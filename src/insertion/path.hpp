@@ -25,6 +25,15 @@ struct Piece
 {
   double begin, end;  ///< arc length along the path [m]
   int tet;            ///< -1: not in the tissue
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("begin", "m", self.begin);
+    v("end", "m", self.end);
+    v("tet", "1", self.tet);
+  }
 };
 
 /// A material place on the path where a coupling point may stand. `first_id` of the path plus its
@@ -34,6 +43,15 @@ struct Site
   double arc;  ///< [m] from the start of the path
   int tet;
   constraint::Anchor anchor;  ///< weights of faces' opposite nodes are exactly 0
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("arc", "m", self.arc);
+    v("tet", "1", self.tet);
+    v("anchor", "", self.anchor);
+  }
 };
 
 /// The channel the tip has cut, in *reference* coordinates: it does not move when the tissue does.
@@ -49,6 +67,18 @@ struct Path
 
   bool empty() const { return vertex.empty(); }
   double length() const { return arc.empty() ? 0.0 : arc.back(); }
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("vertex", "m", self.vertex);
+    v("arc", "m", self.arc);
+    v("piece", "", self.pieces);
+    v("crossing", "m", self.crossings);
+    v("site", "", self.sites);
+    v("first_id", "1", self.first_id);
+  }
 };
 
 /// Appends the straight segment from the end of the path to X (reference), finds the faces it

@@ -30,6 +30,23 @@ struct TipState
   Vec3 offset = Vec3::Zero();  ///< from the tip to the support's mean when the gap is closed [m]
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
   int punctures = 0;           ///< borders pierced so far
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("pressed", "1", self.pressed);
+    v("threshold", "N", self.threshold);
+    v("wall", "1", self.wall);
+    v("pierced_arc", "m", self.pierced_arc);
+    v("pierced_force", "N", self.pierced_force);
+    v("tet", "1", self.tet);
+    v("hold", "", self.hold);
+    v("radius", "m", self.radius);
+    v("offset", "m", self.offset);
+    v("lambda", "N", self.lambda);
+    v("punctures", "1", self.punctures);
+  }
 };
 
 /// Rows the tip got in a set.

@@ -37,6 +37,16 @@ struct NeedleState
   double travel = 0.0;  ///< advance of the base along its own axis since the start [m]
 
   bool finite() const;
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("shaft", "", self.shaft);
+    v("velocity", "m/s", self.v);
+    v("angular_velocity", "rad/s", self.w);
+    v("travel", "m", self.travel);
+  }
 };
 
 /// A needle linearised about a shape: A d = r - H_nᵀλ + holder, on 6 dofs per node (δx, δθ).

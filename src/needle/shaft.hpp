@@ -22,6 +22,16 @@ struct Shaft
   int elements() const { return static_cast<int>(x.size()) - 1; }
   double element_length() const { return length / elements(); }
   const Vec3& tip() const { return x.back(); }
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("length", "m", self.length);
+    v("node", "m", self.x);
+    v("frame", "1", self.R);
+    v("bevel", "1", self.bevel);
+  }
 };
 
 /// A place on the shaft: arc length s from the base at rest [m], position, unit tangent and two

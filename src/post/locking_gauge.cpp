@@ -26,7 +26,7 @@ std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSetti
     const cavity::Wall wall(mesh, cavity.surface, cavity.caps);
     const fem::OwnedField push =
         wall.to_nodes(law::volume_gradient(wall.surface(), wall.undeformed()), space);
-    compliances.push_back(space.dot(push, tissue.answer(push)));
+    compliances.push_back(space.dot(push, tissue.factor().answer(push)));
   }
   return compliances;
 }

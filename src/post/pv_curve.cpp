@@ -12,7 +12,7 @@ namespace {
 
 using core::MatX;
 using core::VecX;
-using step::Simulation;
+using step::Model;
 using step::State;
 
 struct Point
@@ -22,27 +22,27 @@ struct Point
 
 constexpr int most_halvings = 8;
 
-double undeformed_volume(const Simulation& simulation, int cavity)
+double undeformed_volume(const Model& model, int cavity)
 {
-  return simulation.cavities()->wall(cavity).volume();
+  return model.cavities->wall(cavity).volume();
 }
 
 /// Takes the state to a volume, in halves of the way when it is not reached at once.
-step::StepResult at_ratio(Simulation& simulation, int cavity, State from, double before,
-                          double ratio, int halvings)
+step::Outcome<step::Accepted> at_ratio(Model& model, int cavity, State from, double before,
+                                       double ratio, int halvings)
 {
-  const double V0 = undeformed_volume(simulation, cavity);
-  simulation.cavities()->hold_volume(cavity, ratio * V0, from.cavities);
+  const double V0 = undeformed_volume(model, cavity);
+  cavity::Cavities::hold_volume(cavity, ratio * V0, from.cavities);
   const core::TimeStep no_time{0.0, 0.0, true};
-  step::StepResult result = simulation.step(from, no_time);
-  if (result.state) return result;
-  ++simulation.ledger().rejected_steps;
+  step::Outcome<step::Accepted> result = step::advance(model, from, no_time);
+  if (result) return result;
+  ++model.ledger.rejected_steps;
   if (halvings == most_halvings)
-    throw core::solver_error("P-V curve, volume ratio " + core::shown(ratio) + ": " + result.why);
+    throw core::solver_error("P-V curve, volume ratio " + core::shown(ratio) + ": " + result.why());
   const double middle = 0.5 * (before + ratio);
-  step::StepResult half =
-      at_ratio(simulation, cavity, std::move(from), before, middle, halvings + 1);
-  return at_ratio(simulation, cavity, std::move(*half.state), middle, ratio, halvings + 1);
+  step::Outcome<step::Accepted> half =
+      at_ratio(model, cavity, std::move(from), before, middle, halvings + 1);
+  return at_ratio(model, cavity, std::move(half->state), middle, ratio, halvings + 1);
 }
 
 /// Least squares of p over hat functions between equally spaced ratios: straight pieces that hang
@@ -85,14 +85,14 @@ PvCurve fitted(const std::vector<Point>& points, int pieces)
 
 }  // namespace
 
-PvSweep sweep_volume(Simulation& simulation, const PvSettings& settings, const State& start,
+PvSweep sweep_volume(Model& model, const PvSettings& settings, const State& start,
                      step::Observer& observer)
 {
   std::vector<Point> points;
   step::Progress at;
-  const cavity::Cavities& cavities = *simulation.cavities();
+  const cavity::Cavities& cavities = *model.cavities;
   const double started = cavities.volumes(cavities.shape(start.tissue.u))[settings.cavity] /
-                         undeformed_volume(simulation, settings.cavity);
+                         undeformed_volume(model, settings.cavity);
   const auto sweep = [&](bool up) {
     State state = start;
     double before = started;
@@ -102,18 +102,18 @@ PvSweep sweep_volume(Simulation& simulation, const PvSettings& settings, const S
           settings.low + (settings.high - settings.low) * from_low / (settings.points - 1);
       if (up ? ratio <= 1.0 : ratio > 1.0) continue;
       const core::Stopwatch watch;
-      step::StepResult result =
-          at_ratio(simulation, settings.cavity, std::move(state), before, ratio, 0);
-      state = std::move(*result.state);
+      step::Outcome<step::Accepted> result =
+          at_ratio(model, settings.cavity, std::move(state), before, ratio, 0);
+      state = std::move(result->state);
       before = ratio;
-      ++simulation.ledger().steps;
+      ++model.ledger.steps;
       at.nominal = ++at.accepted;
-      at.seconds = simulation.space().comm().max(watch.seconds());
+      at.seconds = model.space.comm().max(watch.seconds());
       State shown = state;
       shown.t = static_cast<double>(at.accepted);
-      observer.accepted(shown, result.report, at);
+      observer.accepted(shown, result->report, at);
       const auto cavity = static_cast<std::size_t>(settings.cavity);
-      points.push_back({ratio, result.report.cavities[cavity].pressure});
+      points.push_back({ratio, result->report.cavities[cavity].pressure});
     }
     return state;
   };

@@ -34,7 +34,7 @@ struct PvSweep
   PvCurve curve;
   step::State end;
 };
-PvSweep sweep_volume(step::Simulation& simulation, const PvSettings& settings,
-                     const step::State& start, step::Observer& observer);
+PvSweep sweep_volume(step::Model& model, const PvSettings& settings, const step::State& start,
+                     step::Observer& observer);
 
 }  // namespace trocar::post

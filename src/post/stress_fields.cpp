@@ -16,13 +16,13 @@ io::Field field(const std::string& name, std::size_t columns, const std::string&
 
 }  // namespace
 
-std::vector<io::Field> stress_fields(const step::Simulation& simulation, const step::State& state,
+std::vector<io::Field> stress_fields(const step::Model& model, const step::State& state,
                                      const StressOutput& wanted)
 {
   std::vector<io::Field> fields;
   if (!wanted.any()) return fields;
-  const tissue::StressField found = simulation.tissue().stresses(state.tissue.u);
-  if (!simulation.space().comm().root()) return fields;  // only rank 0 writes
+  const tissue::StressField found = model.tissue.stresses(state.tissue.u);
+  if (!model.space.comm().root()) return fields;  // only rank 0 writes
   const Eigen::Index tets = found.energy.size();
   VecX mises(wanted.von_mises ? tets : 0), principal(wanted.principal_stress ? 3 * tets : 0);
   for (Eigen::Index t = 0; t < tets; ++t) {
@@ -37,8 +37,7 @@ std::vector<io::Field> stress_fields(const step::Simulation& simulation, const s
   if (wanted.strain_energy)
     fields.push_back(field("/strain_energy", 0, "J/m^3", found.energy, false));
   if (wanted.nodal_stress)
-    fields.push_back(
-        field("/nodal_stress", 6, "Pa", nodal_means(simulation.scene().mesh, found), true));
+    fields.push_back(field("/nodal_stress", 6, "Pa", nodal_means(model.scene.mesh, found), true));
   return fields;
 }
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "io/results.hpp"
-#include "step/simulation.hpp"
+#include "step/step.hpp"
 
 namespace trocar::post {
 
@@ -22,7 +22,7 @@ struct StressOutput
 /// The fields that are asked for: /stress (tets, 6; Cauchy: xx, yy, zz, xy, yz, xz), /von_mises,
 /// /principal_stress (tets, 3; falling), /strain_energy (tets), /nodal_stress (nodes, 6; means of
 /// the tets around a node by volume). On rank 0; other ranks get none. Collective.
-std::vector<io::Field> stress_fields(const step::Simulation& simulation, const step::State& state,
+std::vector<io::Field> stress_fields(const step::Model& model, const step::State& state,
                                      const StressOutput& wanted);
 
 }  // namespace trocar::post

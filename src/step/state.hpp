@@ -24,6 +24,19 @@ struct EnergyAccount
   {
     return supplied - (elastic + kinetic - stored_at_start) - friction - cutting - damping;
   }
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("elastic", "J", self.elastic);
+    v("kinetic", "J", self.kinetic);
+    v("stored_at_start", "J", self.stored_at_start);
+    v("supplied", "J", self.supplied);
+    v("friction", "J", self.friction);
+    v("cutting", "J", self.cutting);
+    v("damping", "J", self.damping);
+  }
 };
 
 /// Velocity as it was differenced from displacements: v = u'(t) - lag u'' + curvature u''' + O(h³).
@@ -31,6 +44,14 @@ struct Differenced
 {
   double lag = 0.0;        ///< [s]
   double curvature = 0.0;  ///< [s²]
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("lag", "s", self.lag);
+    v("curvature", "s^2", self.curvature);
+  }
 };
 
 /// What BDF2 remembers of the step before.
@@ -39,6 +60,15 @@ struct Before
   Differenced velocity;
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("velocity", "", self.velocity);
+    v("tissue", "", self.tissue);
+    v("needle", "", self.needles);
+  }
 };
 
 /// All that changes in a run. A value: a rejected step leaves no trace.
@@ -53,6 +83,21 @@ struct State
   cavity::State cavities;
   std::optional<Before> before;  ///< with -time_scheme bdf2 only
   EnergyAccount energy;          ///< kept with -output_energy only
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("time", "s", self.t);
+    v("step", "s", self.h);
+    v("velocity", "", self.velocity);
+    v("tissue", "", self.tissue);
+    v("needle", "", self.needles);
+    v("insertion", "", self.insertions);
+    v("cavities", "", self.cavities);
+    v("before", "", self.before);
+    v("energy", "", self.energy);
+  }
 };
 
 }  // namespace trocar::step

@@ -19,16 +19,16 @@ long step_count(const TimeSettings& time)
 
 State TimeStepper::start()
 {
-  StepResult result = simulation_->initial_state();
-  if (!result.state) throw core::solver_error("at the start: " + result.why);
+  Outcome<Accepted> result = initial_state(*model_);
+  if (!result) throw core::solver_error("at the start: " + result.why());
   at_ = {};
-  observer_->accepted(*result.state, result.report, at_);
-  return std::move(*result.state);
+  observer_->accepted(result->state, result->report, at_);
+  return std::move(result->state);
 }
 
 State TimeStepper::run(State state)
 {
-  const TimeSettings& time = simulation_->scene().time;
+  const TimeSettings& time = model_->scene.time;
   const long steps = step_count(time);
   for (long n = 1; n <= steps; ++n) {
     const bool not_whole = time.step != time.asked;  // T/N times N may miss T by round-off
@@ -47,21 +47,21 @@ State TimeStepper::advance_in_parts(const State& old, const core::TimeStep& now,
                                     bool ends)
 {
   const core::Stopwatch watch;
-  StepResult result =
-      now.is_static ? simulation_->equilibrium(old, now) : simulation_->step(old, now);
-  if (result.state) {
-    ++simulation_->ledger().steps;
+  Outcome<Accepted> result =
+      now.is_static ? equilibrium(*model_, old, now) : step::advance(*model_, old, now);
+  if (result) {
+    ++model_->ledger.steps;
     ++at_.accepted;
     at_.nominal += ends ? 1 : 0;
     at_.whole = ends;
-    at_.seconds = simulation_->space().comm().max(watch.seconds());
-    observer_->accepted(*result.state, result.report, at_);
-    return std::move(*result.state);
+    at_.seconds = model_->space.comm().max(watch.seconds());
+    observer_->accepted(result->state, result->report, at_);
+    return std::move(result->state);
   }
-  ++simulation_->ledger().rejected_steps;
-  observer_->rejected(now.t, result.why);
+  ++model_->ledger.rejected_steps;
+  observer_->rejected(now.t, result.why());
   if (halvings == most_halvings)
-    throw core::solver_error("at t = " + core::shown(old.t) + " s: " + result.why +
+    throw core::solver_error("at t = " + core::shown(old.t) + " s: " + result.why() +
                              " (the step was halved " + std::to_string(halvings) + " times)");
   core::TimeStep half = now;
   half.h = 0.5 * now.h;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "step/simulation.hpp"
+#include "step/step.hpp"
 
 namespace trocar::step {
 
@@ -24,16 +24,13 @@ class Observer
   virtual void rejected(double t, const std::string& why) = 0;
 };
 
-/// Takes a simulation through time: equal steps to the end, each in halves when it is rejected, at
+/// Takes a model through time: equal steps to the end, each in halves when it is rejected, at
 /// most 8 times over.
 class TimeStepper
 {
  public:
   /// Borrows both.
-  TimeStepper(Simulation& simulation, Observer& observer)
-      : simulation_(&simulation), observer_(&observer)
-  {
-  }
+  TimeStepper(Model& model, Observer& observer) : model_(&model), observer_(&observer) {}
 
   /// The state before the first step. Failure (70) when there is none. Collective.
   State start();
@@ -46,7 +43,7 @@ class TimeStepper
  private:
   State advance_in_parts(const State& old, const core::TimeStep& now, int halvings, bool ends);
 
-  Simulation* simulation_;
+  Model* model_;
   Observer* observer_;
   Progress at_;
 };

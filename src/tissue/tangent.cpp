@@ -22,21 +22,64 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
   return upright;
 }
 
-/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Agreed by
-/// all ranks, as the failures of a factor are. Otherwise the operator fails for good.
-std::optional<std::string> Tissue::why_not(const std::function<void()>& make_operator)
+/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Otherwise
+/// the operator fails for good.
+core::Outcome<core::Done> Tissue::make_factor(const Configuration& at)
 {
-  try {
-    make_operator();
-  } catch (const core::Failure& failure) {
-    if (!settings_.exact_tangent() || failure.code() != core::ExitCode::solver) throw;
-    current_->older = false;
-    current_->rate.reset();
-    current_->uses = 0;
-    return "the exact tangent has no factor (an instability, or too large a step): " +
-           std::string(failure.what());
+  const auto made = current_->factor.make(values_);
+  current_->made.reset();
+  if (made) {
+    if (settings_.model != Model::linear)
+      current_->made = std::make_shared<const FactorOrigin>(FactorOrigin{*current_->rate, at});
+    return made;
   }
-  return std::nullopt;
+  if (!settings_.exact_tangent()) throw core::solver_error(made.why());
+  current_->rate.reset();
+  return core::Refusal{"the exact tangent has no factor (an instability, or too large a step): " +
+                       made.why()};
+}
+
+/// Where the state goes on with a factor that is not the one at hand, that is made again: a step
+/// depends on its state, not on what was tried or dropped in between. With other rates a new one is
+/// due anyway.
+core::Outcome<core::Done> Tissue::go_on_with_factor(const TissueState& old, const TimeStep& step)
+{
+  const bool lags = settings_.model != Model::linear && settings_.lag_tolerance > 0.0;
+  if (!lags || !old.factor || !(old.factor->rates == step.rates())) return core::Done{};
+  current_ = &operator_for(old.factor->rates);
+  if (!space_->comm().all(current_->made == old.factor)) {
+    current_->rate = old.factor->rates;
+    current_->at = old.factor->at;
+    assemble(current_->at, *current_->rate);
+    if (const auto made = make_factor(current_->at); !made) return made;
+    current_->made = old.factor;
+  }
+  current_->factor.set_age(old.age);
+  return core::Done{};
+}
+
+void Tissue::remember_factor(TissueState& state) const
+{
+  state.factor = current_->made;
+  state.age = current_->factor.age();
+}
+
+void Tissue::drop_caches()
+{
+  for (Operator& one : operators_) {
+    one.rate.reset();
+    one.made.reset();
+    one.factor.set_age({});
+  }
+  configured_.u.reset();
+}
+
+/// With stale reuse a number of steps share a factor, whatever it takes.
+bool Tissue::factor_worn() const
+{
+  if (settings_.reuse == solve::Reuse::stale)
+    return current_->factor.age().uses >= settings_.stale_steps;
+  return current_->factor.worn();
 }
 
 int Tissue::folded(const OwnedField& u) const

@@ -43,55 +43,52 @@ bool Tissue::configure(const fem::GhostedField& u, Configuration& at) const
 void Tissue::analyse()
 {
   const bool turns = settings_.model != Model::linear && settings_.lag_tolerance > 0.0;
-  Operator fresh;
-  fresh.solver = solve::make_step_solver(
+  std::unique_ptr<solve::StepSolver> solver = solve::make_step_solver(
       settings_.provider,
       {*space_, pattern_, fixed_, mesh_->x, settings_.pinned, settings_.reuse != solve::Reuse::none,
        settings_.most_memory, turns, settings_.linear, *ledger_});
-  if (settings_.reuse == solve::Reuse::stale && !fresh.solver->can_turn())
+  if (settings_.reuse == solve::Reuse::stale && !solver->can_turn())
     throw core::solver_error("stale reuse keeps a factor, but the tissue solver is " +
-                             fresh.solver->describe());
-  operators_.push_back(std::move(fresh));
+                             solver->describe());
+  operators_.push_back({solve::LaggedFactor(std::move(solver), *space_, fixed_), {}, {}, {}});
   current_ = &operators_.back();
 }
 
-void Tissue::use_operator(const Configuration& at, const TimeStep& step)
+/// A step length that comes back finds its factor; many of them must not fill the memory.
+Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
 {
-  const core::Rates rate = step.rates();
+  constexpr std::size_t most_kept = 2;
   const bool linear = settings_.model == Model::linear;
   const auto known = std::find_if(operators_.begin(), operators_.end(), [&](const Operator& o) {
     return !linear || o.rate == rate || !o.rate;
   });
-  if (known != operators_.end()) {
-    current_ = &*known;
-    const bool same = current_->rate == rate && (linear || current_->at == at);
-    if (space_->comm().all(same)) {
-      ++current_->uses;
-      if (!current_->older) current_->sweeps += current_->last_sweeps = 1.0;
-      return;
-    }
-  } else {
-    // A step length that comes back finds its factor; many of them must not fill the memory.
-    constexpr std::size_t most_kept = 2;
-    if (operators_.size() < most_kept)
-      analyse();
-    else  // the oldest one's analysis serves again
-      std::rotate(operators_.begin(), operators_.begin() + 1, operators_.end());
-    current_ = &operators_.back();
-  }
+  if (known != operators_.end()) return *known;
+  if (operators_.size() < most_kept)
+    analyse();
+  else  // the oldest one's analysis serves again
+    std::rotate(operators_.begin(), operators_.begin() + 1, operators_.end());
+  return operators_.back();
+}
+
+core::Outcome<core::Done> Tissue::use_operator(const Configuration& at, const TimeStep& step)
+{
+  const core::Rates rate = step.rates();
+  const bool linear = settings_.model == Model::linear;
+  current_ = &operator_for(rate);
+  solve::LaggedFactor& factor = current_->factor;
   const bool same_rates = current_->rate == rate;
+  if (space_->comm().all(same_rates && (linear || current_->at == at))) {
+    factor.serve_again();
+    return core::Done{};
+  }
   current_->rate = rate;
   if (!linear) current_->at = at;
   assemble(at, rate);
-  const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && current_->uses > 0 &&
-                       current_->solver->can_turn();
-  if (may_lag && space_->comm().all(same_rates) && !factor_worn()) {
-    current_->solver->turn(turned_nodes(at.R, current_->R_factor));
-    current_->older = true;
-    ++current_->uses;
-  } else {
-    factor(at.R);
-  }
+  const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && factor.age().uses > 0 &&
+                       factor.solver().can_turn();
+  if (!may_lag || !space_->comm().all(same_rates) || factor_worn()) return make_factor(at);
+  factor.keep(turned_nodes(at.R, current_->made->at.R));
+  return core::Done{};
 }
 
 OwnedField Tissue::external(const TimeStep& step) const
@@ -169,23 +166,9 @@ Kinematics Tissue::kinematics(const TissueState& old, const OwnedField& u,
   return motion;
 }
 
-FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate,
-                               const TimeStep& step, const fem::Load& more, bool goes_on)
+/// What prescribed displacements move in this linearisation [m].
+OwnedField Tissue::prescribed_increment(const OwnedField& iterate, const TimeStep& step) const
 {
-  if (!linearise_at(iterate, goes_on))
-    return {space_->zero(), {}, "an element of the tissue turned inside out"};
-  if (auto trouble = why_not([&] { use_operator(at_, step); }))
-    return {space_->zero(), {}, std::move(trouble)};
-  // An approach ends where rounding of the forces does, or would run on and on where nothing
-  // happens. Under loads that follow r is the rest of large ones.
-  const bool approach = current_->older || more.stiffness;
-  const bool known = forces_known(old, iterate, goes_on);
-  Sizes sizes;
-  if (approach && !known) sizes = no_sizes();
-  OwnedField r = known ? forces_from_balance(old, iterate, step, goes_on)
-                       : forces(old, iterate, at_, step, approach ? &sizes : nullptr);
-  if (more.force.value.size() > 0) r.value += more.force.value;
-
   OwnedField prescribed = space_->zero();
   const OwnedField target = prescribed_displacement(settings_.boundary, *mesh_, *space_, step.t);
   for (int local = 0; local < space_->owned(); ++local) {
@@ -195,54 +178,52 @@ FreeMotion Tissue::free_motion(const TissueState& old, const OwnedField& iterate
         prescribed.value[3 * local + a] =
             step.load * target.value[3 * local + a] - iterate.value[3 * local + a];
   }
+  return prescribed;
+}
+
+core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
+                                                      const OwnedField& iterate,
+                                                      const TimeStep& step, const fem::Load& more,
+                                                      bool goes_on)
+{
+  if (!linearise_at(iterate, goes_on))
+    return core::Refusal{"an element of the tissue turned inside out"};
+  if (!goes_on)
+    if (const auto made = go_on_with_factor(old, step); !made) return made.refusal();
+  if (const auto made = use_operator(at_, step); !made) return made.refusal();
+  solve::Linearisation at;
+  at.factor = &current_->factor;
+  at.loads_follow = static_cast<bool>(more.stiffness);
+  // Iterations end where rounding of the forces does, or would run on and on where nothing happens.
+  // Under loads that follow r is the rest of large ones.
+  const bool known = forces_known(old, iterate, goes_on);
+  Sizes sizes;
+  if (at.lagged() && !known) sizes = no_sizes();
+  OwnedField r = known ? forces_from_balance(old, iterate, step, goes_on)
+                       : forces(old, iterate, at_, step, at.lagged() ? &sizes : nullptr);
+  if (more.force.value.size() > 0) r.value += more.force.value;
+
+  const OwnedField prescribed = prescribed_increment(iterate, step);
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
   if (moves) r.value -= operate_by_elements(at_, step.rates(), prescribed).value;
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
-  FreeMotion motion{{iterate.value + prescribed.value}, {}};
-  const double least = more.stiffness ? 1e-10 : 1e-12;
-  if (approach)
-    begin_approach(old, step, r, more, least_rest(known ? configured_.sizes : sizes, least),
-                   goes_on, motion);
-  else
-    motion.half = begin(r);
-  return motion;
-}
-
-core::VecX Tissue::at(const solve::Probes& probes, const FreeMotion& motion, const OwnedField& u)
-{
-  core::VecX read = current_->solver->at(probes, motion.half);
-  const OwnedField ahead{motion.base.value - u.value};
-  if (!space_->comm().any(!ahead.value.isZero(0.0))) return read;
-  const fem::GlobalField all = space_->gather(ahead);
-  for (std::size_t k = 0; k < probes.nodes.size(); ++k)
-    read.segment<3>(3 * static_cast<Eigen::Index>(k)) += all.node(probes.nodes[k]);
-  for (std::size_t k = 0; k < probes.wide.size(); ++k)
-    read[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] +=
-        space_->dot(probes.wide[k]->vector, ahead);
-  return read;
-}
-
-OwnedField Tissue::finish(const FreeMotion& motion, const solve::Probes& probes,
-                          const core::VecX& f)
-{
-  OwnedField u = current_->solver->finish(motion.half, probes, f);
-  fixed_.clear(u);
-  u.value += motion.base.value;
-  return u;
-}
-
-OwnedField Tissue::answer(const OwnedField& forces)
-{
-  OwnedField u = current_->solver->finish(begin(forces), {}, {});
-  fixed_.clear(u);
-  return u;
-}
-
-solve::HalfSolution Tissue::begin(const OwnedField& forces)
-{
-  OwnedField f = forces;
-  fixed_.clear(f);
-  return current_->solver->begin(f);
+  fixed_.clear(r);
+  at.iterate = iterate;
+  at.base = {iterate.value + prescribed.value};
+  at.residual = std::move(r);
+  at.product = [this, stiffness = more.stiffness](const OwnedField& d) {
+    OwnedField product = times(d);
+    if (stiffness) product.value -= stiffness(d).value;
+    return product;
+  };
+  at.refactor = [this] { return make_factor(current_->at); };
+  if (!at.lagged()) return at;
+  at.least = least_rest(known ? configured_.sizes : sizes, at.loads_follow ? 1e-10 : 1e-12);
+  if (!step.start && !goes_on) {
+    at.guess = {step.h * old.v.value};
+    fixed_.clear(at.guess);
+  }
+  return at;
 }
 
 OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step) const
@@ -256,14 +237,14 @@ OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const T
 
 std::string Tissue::describe_solver() const
 {
-  return current_->solver->describe();
+  return factor().solver().describe();
 }
 
 void Tissue::prepare(const TimeStep& step)
 {
   Configuration at;
   configure(space_->with_ghosts(space_->zero()), at);
-  use_operator(at, step);
+  if (const auto made = use_operator(at, step); !made) throw core::solver_error(made.why());
 }
 
 }  // namespace trocar::tissue

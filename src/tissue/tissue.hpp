@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,8 +9,7 @@
 #include "core/time_step.hpp"
 #include "fem/load.hpp"
 #include "mesh/mesh.hpp"
-#include "solve/step_solver.hpp"
-#include "tissue/approach.hpp"
+#include "solve/linearisation.hpp"
 #include "tissue/balance.hpp"
 #include "tissue/boundary.hpp"
 #include "tissue/elements.hpp"
@@ -36,21 +34,44 @@ struct TissueSettings : ElementSettings
   double newton_tolerance = 1e-8;
 };
 
-/// Displacement and velocity of every owned node. A value.
-struct TissueState
+/// What the factor of turning tissue was made from: enough to make it again.
+struct FactorOrigin
 {
-  OwnedField u;  ///< [m]
-  OwnedField v;  ///< [m/s]
+  core::Rates rates;
+  Configuration at;  ///< where
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("velocity_rate", "1/s", self.rates.velocity);
+    v("acceleration_rate", "1/s", self.rates.acceleration);
+    v("rotation", "1", self.at.R);
+    v("gradient", "1", self.at.G);
+    v("pressure", "Pa", self.at.p);
+  }
 };
 
-/// Answer of the tissue alone to one linearisation: u_free = base + A⁻¹ r, half solved.
-struct FreeMotion
+/// Displacement and velocity of every owned node, and the factor that steps from here may go on
+/// with. A value.
+struct TissueState
 {
-  OwnedField base;                       ///< the iterate, with prescribed displacements [m]
-  solve::HalfSolution half;              ///< of A⁻¹ r; with an approach only after `start_from`
-  std::optional<std::string> trouble{};  ///< why the step cannot be taken; equal on all ranks
-  core::VecX pushed{};                   ///< multipliers that r holds already (rows, or none) [N]
-  std::optional<Approach> approach{};    ///< with a factor of an older operator
+  OwnedField u;                                  ///< [m]
+  OwnedField v;                                  ///< [m/s]
+  std::shared_ptr<const FactorOrigin> factor{};  ///< empty: none yet, or linear tissue
+  solve::FactorAge age{};                        ///< of that factor
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("displacement", "m", self.u);
+    v("velocity", "m/s", self.v);
+    v("factor", "", self.factor);
+    v("factor_uses", "1", self.age.uses);
+    v("factor_sweeps", "1", self.age.sweeps);
+    v("factor_last_sweeps", "1", self.age.last_sweeps);
+  }
 };
 
 /// Energies at the end of a step and what went in and was lost in it [J].
@@ -73,23 +94,19 @@ struct HolderForces
 class Tissue
 {
  public:
-  /// Passes of an approach, beside those that cost as much as a factor, before one is made.
-  static constexpr int most_passes = 8;
-  /// Passes of one with a factor of its own, under loads that follow.
-  static constexpr int most_passes_of_own = 200;
-
   /// Borrows mesh, space and ledger. Collective.
   Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
          core::Ledger& ledger);
 
-  TissueState at_rest() const { return {space_->zero(), space_->zero()}; }
+  TissueState at_rest() const { return {space_->zero(), space_->zero(), {}, {}}; }
 
-  /// Linearises at `iterate` within the step that began at `old` and solves for the motion without
-  /// constraints, under loads that are linearised there as well; those that follow the tissue make
-  /// it an approach. `goes_on`: within the step from the last linearisation. Linear tissue keeps
-  /// one assembled and factored operator per distinct rates. Collective.
-  FreeMotion free_motion(const TissueState& old, const OwnedField& iterate, const TimeStep& step,
-                         const fem::Load& more = {}, bool goes_on = false);
+  /// Linearises at `iterate` within the step that began at `old`, under loads that are linearised
+  /// there as well. `goes_on`: within the step from the last linearisation. Linear tissue keeps one
+  /// assembled and factored operator per distinct rates. Refused where an element is turned inside
+  /// out or an exact tangent has no factor. What it gives is good until the next one. Collective.
+  core::Outcome<solve::Linearisation> linearise(const TissueState& old, const OwnedField& iterate,
+                                                const TimeStep& step, const fem::Load& more = {},
+                                                bool goes_on = false);
 
   /// The first tet that u, or a part of it that is not finite, turns inside out, in file numbering;
   /// -1: none. Collective; equal on every rank.
@@ -103,37 +120,13 @@ class Tissue
   bool drop_exact();
   bool exact_tangent() const { return settings_.exact_tangent(); }
 
-  /// u_free - u at the probes [m], by slot. Collective.
-  core::VecX at(const solve::Probes& probes, const FreeMotion& motion, const OwnedField& u);
-
-  /// u_free + A⁻¹ Sᵀ f [m] for forces f [N] by slot of the probes; without probes u_free.
-  /// Collective.
-  OwnedField finish(const FreeMotion& motion, const solve::Probes& probes, const core::VecX& f);
-
-  /// Starts an approach from multipliers and what they push with, Hᵀλ [N]: with a factor in single
-  /// precision only what is not yet balanced may go through it. Collective.
-  void start_from(FreeMotion& motion, const core::VecX& lambda, const OwnedField& forces);
-  /// The way from u to u + A⁻¹ f for nodal forces f [N], with the operator of the last
-  /// `free_motion`. Collective.
-  FreeMotion pushed(const OwnedField& u, const OwnedField& forces);
-  /// True when u is the answer to this linearisation; else `motion` becomes the next pass of the
-  /// approach to it, or has its trouble: no stable equilibrium under loads that follow.
-  /// `tolerance`: of ‖r + Hᵀλ - AΔu‖ against ‖r‖ + ‖Hᵀλ‖. Collective.
-  bool converged(FreeMotion& motion, const OwnedField& u, const Push& push, double tolerance);
-  /// Factors the present operator and goes on with it, from where the approach stands. Collective.
-  void give_up(FreeMotion& motion);
-  /// The factor is that of an older operator.
-  bool lags() const { return current_->older; }
-  /// A⁻¹ f [m] for nodal forces f [N] with the operator of the last `free_motion`. Collective.
-  OwnedField answer(const OwnedField& forces);
-  /// Counts the factors made: compliance columns of one version belong together.
-  int factor_version() const { return factor_version_; }
-  /// Linearisations that the factor has served.
-  int factor_age() const { return current_->uses; }
-
-  /// A⁻¹ f for nodal forces f [N] with the operator of the last `free_motion`, half solved.
-  /// Collective.
-  solve::HalfSolution begin(const OwnedField& forces);
+  /// Writes down what the factor was made from and has served. Not collective.
+  void remember_factor(TissueState& state) const;
+  /// Forgets all that was made for earlier steps. Not collective.
+  void drop_caches();
+  /// The factor of the last linearisation.
+  solve::LaggedFactor& factor() { return current_->factor; }
+  const solve::LaggedFactor& factor() const { return current_->factor; }
 
   /// r = f_ext - f_int(u) - M(Δu/h - v)/h̄ - BΔu/h [N] on free dofs. Collective.
   OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
@@ -155,9 +148,6 @@ class Tissue
   Work work(const TissueState& old, const TissueState& past, const TissueState& next,
             const TimeStep& step, const OwnedField& push) const;
 
-  /// The compliance that belongs to the operator of the last `free_motion`.
-  solve::IsolatedCompliance& compliance() { return current_->solver->compliance(); }
-
   /// Where the operator is linearised at u. False when an element is turned inside out, on every
   /// rank. Collective.
   bool configure(const fem::GhostedField& u, Configuration& at) const;
@@ -177,8 +167,10 @@ class Tissue
   const mesh::Mesh& mesh() const { return *mesh_; }
   const fem::Space& space() const { return *space_; }
   std::string describe_solver() const;
-  double factor_bytes() const { return current_->solver->factor_bytes(); }  ///< 0: not ours [B]
-  double memory_bytes() const { return current_->solver->memory_bytes(); }  ///< estimate, likewise
+  double memory_bytes() const
+  {
+    return factor().solver().memory_bytes();
+  }  ///< estimate, 0: not ours [B]
   /// Makes the solver and its symbolic analysis, so that its memory is known before it is taken.
   /// Collective.
   void analyse();
@@ -188,31 +180,21 @@ class Tissue
  private:
   struct Operator
   {
-    std::optional<core::Rates> rate;         ///< none: not assembled yet, or to be again
-    Configuration at;                        ///< it was assembled with; empty for linear tissue
-    std::vector<Mat3> R_factor;              ///< rotations its factor was made with
-    bool older = false;                      ///< the factor is that of an older operator
-    int uses = 0;                            ///< linearisations that the factor has served
-    double sweeps = 0.0, last_sweeps = 0.0;  ///< they took in all, and the last one
-    std::unique_ptr<solve::StepSolver> solver;
+    solve::LaggedFactor factor;
+    std::optional<core::Rates> rate{};           ///< none: not assembled yet, or to be again
+    Configuration at{};                          ///< it was assembled with; empty for linear tissue
+    std::shared_ptr<const FactorOrigin> made{};  ///< from what its factor was; linear tissue: none
   };
 
   bool linearise_at(const OwnedField& iterate, bool goes_on);
-  void use_operator(const Configuration& at, const TimeStep& step);
-  void factor(const std::vector<Mat3>& R);
-  std::optional<std::string> why_not(const std::function<void()>& make_operator);
+  core::Outcome<core::Done> use_operator(const Configuration& at, const TimeStep& step);
+  core::Outcome<core::Done> make_factor(const Configuration& at);
+  core::Outcome<core::Done> go_on_with_factor(const TissueState& old, const TimeStep& step);
+  Operator& operator_for(const core::Rates& rate);
   bool factor_worn() const;
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
                                  const std::vector<Mat3>& R_factor) const;
-  void begin_approach(const TissueState& old, const TimeStep& step, const OwnedField& r,
-                      const fem::Load& more, double least, bool goes_on, FreeMotion& motion);
-  void change_rows(Approach& approach, const OwnedField& d, const OwnedField& A_d,
-                   const core::VecX& more, const OwnedField& pushed, const Push& push,
-                   bool same_laws) const;
-  bool advance(Approach& approach, OwnedField d, OwnedField A_d, core::VecX more,
-               const Push& push) const;
-  void end_approach(FreeMotion& motion, bool convex);
-  OwnedField operate(const Approach& approach, const OwnedField& d) const;
+  OwnedField prescribed_increment(const OwnedField& iterate, const TimeStep& step) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const Configuration& at,
                     const TimeStep& step, Sizes* sizes = nullptr) const;
   bool forces_known(const TissueState& old, const OwnedField& u, bool goes_on) const;
@@ -259,7 +241,6 @@ class Tissue
   /// rotation change.
   std::vector<Operator> operators_;
   Operator* current_ = nullptr;
-  int factor_version_ = 0;
 };
 
 }  // namespace trocar::tissue

@@ -118,7 +118,7 @@ double twelve_columns(test::Body& body, const std::vector<int>& nodes)
   for (std::size_t at = 0; at + 4 <= nodes.size(); at += 4) {
     const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(at);
     const core::Stopwatch four;
-    body.tissue.compliance().block({{begin, begin + 4}, {}}, report);
+    body.tissue.factor().compliance().block({{begin, begin + 4}, {}}, report);
     by_four.push_back(four.seconds());
   }
   std::nth_element(by_four.begin(),
@@ -132,21 +132,18 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
   test::Body body(shape, gel(solve::Provider::supernodal));
   double h = 0.01;
   set_up(bench, body, h);
-  bench.figure("factor_bytes", body.tissue.factor_bytes(), "B");
+  bench.figure("factor_bytes", body.tissue.factor().solver().factor_bytes(), "B");
   const auto nodes = axis_nodes(body.mesh, shape.size);
   bench.figure("isolated_dofs", 3.0 * static_cast<double>(nodes.size()), "1");
 
   const fem::OwnedField load{core::VecX::Ones(body.space.owned_dofs())};
-  bench.figure("sweep", bench.median([&] {
-    body.tissue.finish({body.space.zero(), body.tissue.begin(load), std::nullopt}, {}, {});
-  }),
-               "s");
+  bench.figure("sweep", bench.median([&] { body.tissue.factor().answer(load); }), "s");
   // A new h is a new operator: its columns start from nothing.
   solve::ComplianceReport report;
   bench.figure("columns_at_once",
                bench.median(
                    [&] {
-                     body.tissue.compliance().block({nodes, {}}, report);
+                     body.tissue.factor().compliance().block({nodes, {}}, report);
                    },
                    [&] {
                      h *= 1.01;
@@ -159,9 +156,10 @@ void time_supernodal(const Bench& bench, const test::BlockShape& shape)
   const solve::Probes probes{nodes, {}};
   const core::VecX f = core::VecX::Ones(probes.size());
   bench.figure("step_sweep", bench.median([&] {
-    const tissue::FreeMotion motion{body.space.zero(), body.tissue.begin(load), std::nullopt};
-    body.tissue.at(probes, motion, motion.base);
-    body.tissue.finish(motion, probes, f);
+    solve::LaggedFactor& factor = body.tissue.factor();
+    const solve::HalfSolution half = factor.begin(load);
+    factor.read(probes, half);
+    factor.finish(half, probes, f);
   }),
                "s");
 }
@@ -224,7 +222,7 @@ void time_pinned(const Bench& bench, const test::BlockShape& shape)
   bench.figure("pinned_columns",
                bench.median(
                    [&] {
-                     body.tissue.compliance().block({nodes, {}}, report);
+                     body.tissue.factor().compliance().block({nodes, {}}, report);
                    },
                    renew),
                "s");
@@ -239,7 +237,7 @@ void time_baseline(const Bench& bench, const test::BlockShape& shape, std::size_
   auto nodes = axis_nodes(body.mesh, shape.size);
   nodes.resize(std::min(nodes.size(), (columns + 2) / 3));
   solve::ComplianceReport report;
-  body.tissue.compliance().block({nodes, {}}, report);
+  body.tissue.factor().compliance().block({nodes, {}}, report);
   bench.figure("mumps_column", report.seconds / report.built, "s");
 }
 

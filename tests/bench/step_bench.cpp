@@ -70,10 +70,10 @@ double median(std::vector<double> values)
   return values[values.size() / 2];
 }
 
-step::State must(const step::StepResult& result)
+step::State must(const step::Outcome<step::Accepted>& result)
 {
-  if (!result.state) throw core::solver_error("rejected: " + result.why);
-  return *result.state;
+  if (!result) throw core::solver_error("rejected: " + result.why());
+  return result->state;
 }
 
 core::TimeStep time_of(const step::Scene& scenario, int n)
@@ -85,19 +85,20 @@ core::TimeStep time_of(const step::Scene& scenario, int n)
 Course lagged(step::Scene scenario, double tolerance, const base::Comm& comm)
 {
   scenario.tissue.lag_tolerance = tolerance;
-  step::Simulation simulation(scenario, comm);
+  step::Model simulation(scenario, comm);
   Course course;
-  step::State state = must(simulation.initial_state());
+  step::State state = must(step::initial_state(simulation));
   for (int n = 1; n <= ramp_steps; ++n) {
     const bool timed = n > ramp_steps - measured_steps;
     if (timed) course.states.push_back(state);
     const core::Stopwatch watch;
-    const step::StepResult result = simulation.step(state, time_of(scenario, n));
+    const step::Outcome<step::Accepted> result =
+        step::advance(simulation, state, time_of(scenario, n));
     if (timed) course.seconds.push_back(watch.seconds());
     state = must(result);
-    course.passes = result.report.passes;
-    course.rows = result.report.rows;
-    course.age = simulation.tissue().factor_age();
+    course.passes = result->report.passes;
+    course.rows = result->report.rows;
+    course.age = simulation.tissue.factor().age().uses;
   }
   course.states.push_back(state);
   return course;
@@ -107,14 +108,15 @@ Course lagged(step::Scene scenario, double tolerance, const base::Comm& comm)
 Course again(step::Scene scenario, const Course& model, std::size_t steps, const base::Comm& comm)
 {
   scenario.tissue.lag_tolerance = 0.0;
-  step::Simulation simulation(scenario, comm);
-  simulation.prepare();  // analysis and first factor are not part of a step
+  step::Model simulation(scenario, comm);
+  step::prepare(simulation);  // analysis and first factor are not part of a step
   Course course;
   const std::size_t first = model.states.size() - 1 - steps;
   for (std::size_t k = first; k + 1 < model.states.size(); ++k) {
     const int n = ramp_steps - static_cast<int>(model.states.size() - 2 - k);
     const core::Stopwatch watch;
-    const step::StepResult result = simulation.step(model.states[k], time_of(scenario, n));
+    const step::Outcome<step::Accepted> result =
+        step::advance(simulation, model.states[k], time_of(scenario, n));
     course.seconds.push_back(watch.seconds());
     course.states.push_back(must(result));
   }

@@ -71,17 +71,17 @@ void add_needle(step::Scene& scenario, double y)
   scenario.time.end = 1.0;
 }
 
-step::StepResult solved(step::Simulation& simulation)
+step::Outcome<step::Accepted> solved(step::Model& simulation)
 {
-  step::StepResult result = simulation.initial_state();
-  if (!result.state) throw core::solver_error(result.why);
+  step::Outcome<step::Accepted> result = step::initial_state(simulation);
+  if (!result) throw core::solver_error(result.why());
   return result;
 }
 
 step::StepReport solved(const step::Scene& scenario)
 {
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  return solved(simulation).report;
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  return solved(simulation)->report;
 }
 
 }  // namespace trocar::test

@@ -28,7 +28,7 @@ void press(step::Scene& scenario, double depth);
 void add_needle(step::Scene& scenario, double y);
 
 /// The start of a simulation's run; throws why it was rejected.
-step::StepResult solved(step::Simulation& simulation);
+step::Outcome<step::Accepted> solved(step::Model& simulation);
 /// The report of it, when the simulation itself is not looked at.
 step::StepReport solved(const step::Scene& scenario);
 

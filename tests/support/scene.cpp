@@ -48,17 +48,17 @@ struct Keeper : step::Observer
 
 Run run(const step::Scene& scenario)
 {
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
   Keeper keeper;
   step::TimeStepper stepper(simulation, keeper);
   stepper.run(stepper.start());
-  keeper.run.ledger = simulation.ledger();
+  keeper.run.ledger = simulation.ledger;
   return keeper.run;
 }
 
 Run run(const step::Scene& scenario, const std::vector<double>& lengths)
 {
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
   Keeper keeper;
   step::TimeStepper stepper(simulation, keeper);
   step::State state = stepper.start();
@@ -67,7 +67,7 @@ Run run(const step::Scene& scenario, const std::vector<double>& lengths)
     t += h;
     state = stepper.advance(state, {t, h, scenario.time.is_static});
   }
-  keeper.run.ledger = simulation.ledger();
+  keeper.run.ledger = simulation.ledger;
   return keeper.run;
 }
 

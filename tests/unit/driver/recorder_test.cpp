@@ -23,7 +23,7 @@ struct Recorded
   {
     std::error_code nothing_there;
     if (comm.root()) fs::remove_all(folder, nothing_there);
-    simulation.prepare();
+    step::prepare(simulation);
   }
   static Scenario scene(const std::string& folder, const OutputSettings& output, bool energy)
   {
@@ -38,17 +38,17 @@ struct Recorded
 
   base::Comm comm;
   Scenario scenario;
-  step::Simulation simulation;
+  step::Model simulation;
 };
 
 /// Two steps from the start, with fields after every other one.
 void run_two_steps(Recorded& one, Recorder& recorder)
 {
-  step::StepResult result = one.simulation.initial_state();
+  step::Outcome<step::Accepted> result = step::initial_state(one.simulation);
   for (int n = 0; n <= 2; ++n) {
-    if (n > 0) result = one.simulation.step(*result.state, {0.02 * n, 0.02, false});
-    ASSERT_TRUE(result.state) << result.why;
-    recorder.record(*result.state, result.report, n, 0.5, n % 2 == 0);
+    if (n > 0) result = step::advance(one.simulation, result->state, {0.02 * n, 0.02, false});
+    ASSERT_TRUE(result) << result.why();
+    recorder.record(result->state, result->report, n, 0.5, n % 2 == 0);
   }
   recorder.close();
 }
@@ -96,13 +96,13 @@ TEST(Recorder, WritesTheFieldsThatAreAskedFor)
   output.velocity = true;
   Recorded one("recorder_fields", output, true);
   Recorder recorder(one.simulation, one.scenario, {}, {});
-  step::StepResult result = one.simulation.initial_state();
-  result = one.simulation.step(*result.state, {0.02, 0.02, false});
-  ASSERT_TRUE(result.state) << result.why;
-  recorder.record(*result.state, result.report, 7, 0.0, true);
+  step::Outcome<step::Accepted> result = step::initial_state(one.simulation);
+  result = step::advance(one.simulation, result->state, {0.02, 0.02, false});
+  ASSERT_TRUE(result) << result.why();
+  recorder.record(result->state, result->report, 7, 0.0, true);
   recorder.close();
-  const fem::GlobalField u = one.simulation.space().gather(result.state->tissue.u);
-  const auto& points = result.state->insertions[0].points;
+  const fem::GlobalField u = one.simulation.space.gather(result->state.tissue.u);
+  const auto& points = result->state.insertions[0].points;
   EXPECT_GT(points.size(), 1U);
   base::on_root(one.comm, [&] {
     const test::H5Reader step("recorder_fields/fields/step_000007.h5");

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "constraint/reduce.hpp"
+#include "constraint/system.hpp"
 #include "insertion/insertion.hpp"
 #include "support/block.hpp"
 
@@ -45,10 +45,10 @@ struct Inserted
   {
     constraint::Set set;
     rows = insertion.add_rows(state, needle.initial().shaft, tissue, 0, h, set);
-    const solve::Probes probes = set.probes();
-    const auto size = static_cast<Eigen::Index>(probes.size());
-    return constraint::reduce(set, 1e-3 * core::MatX::Identity(size, size), core::VecX::Zero(size),
-                              {});
+    const constraint::System system(set, {});
+    const auto size = static_cast<Eigen::Index>(system.probes().size());
+    return system.problem(system.compliance(1e-3 * core::MatX::Identity(size, size)),
+                          core::VecX::Zero(size));
   }
 
   mesh::Mesh mesh;

@@ -77,7 +77,7 @@ TEST_P(Compliance, EqualsTheDenseInverseWhateverWasAskedBefore)
       {{}, {&one}}};
   for (const auto& probes : requests) {
     solve::ComplianceReport report;
-    const core::MatX C = body.tissue.compliance().block(probes, report);
+    const core::MatX C = body.tissue.factor().compliance().block(probes, report);
     const core::MatX S = selection(body, probes);
     const core::MatX reference = S * inverse * S.transpose();
     EXPECT_LT((C - reference).norm(), 1e-10 * reference.norm());
@@ -89,7 +89,7 @@ TEST_P(Compliance, EqualsTheDenseInverseWhateverWasAskedBefore)
   EXPECT_EQ(body.ledger.factorisations, 1);
   const auto built = body.ledger.columns_built;
   solve::ComplianceReport again;
-  body.tissue.compliance().block(requests[4], again);
+  body.tissue.factor().compliance().block(requests[4], again);
   EXPECT_EQ(again.built, 0);
   EXPECT_EQ(body.ledger.columns_built, built);
 }
@@ -100,13 +100,13 @@ TEST_P(Compliance, ANewOperatorForgetsEveryColumn)
   settings.model = tissue::Model::corotational;
   test::Body body({3, 3, 3, core::Vec3(0.1, 0.1, 0.1)}, settings);
   const tissue::TissueState rest = body.tissue.at_rest();
-  body.tissue.free_motion(rest, rest.u, {0.01, 0.01, false});
+  body.tissue.linearise(rest, rest.u, {0.01, 0.01, false});
   solve::ComplianceReport report;
-  body.tissue.compliance().block({{62, 63}, {}}, report);
+  body.tissue.factor().compliance().block({{62, 63}, {}}, report);
   EXPECT_EQ(report.built, 6);
   // Same rotations: same version, nothing is assembled or solved again.
-  body.tissue.free_motion(rest, rest.u, {0.02, 0.01, false});
-  body.tissue.compliance().block({{62, 63}, {}}, report);
+  body.tissue.linearise(rest, rest.u, {0.02, 0.01, false});
+  body.tissue.factor().compliance().block({{62, 63}, {}}, report);
   EXPECT_EQ(report.built, 0);
   EXPECT_EQ(report.reused, 6);
   EXPECT_EQ(body.ledger.assemblies, 1);
@@ -115,8 +115,8 @@ TEST_P(Compliance, ANewOperatorForgetsEveryColumn)
     const core::Vec3& X = body.mesh.x[static_cast<std::size_t>(body.space.file_node(i))];
     turned.node(i) = core::rotation_exp(core::Vec3(0, 0.1 * X.z() / 0.1, 0)) * X - X;
   }
-  body.tissue.free_motion(rest, turned, {0.02, 0.01, false});
-  body.tissue.compliance().block({{62, 63}, {}}, report);
+  body.tissue.linearise(rest, turned, {0.02, 0.01, false});
+  body.tissue.factor().compliance().block({{62, 63}, {}}, report);
   EXPECT_EQ(report.built, 6);
   EXPECT_EQ(body.ledger.assemblies, 2);
 }
@@ -142,13 +142,13 @@ TEST_P(Compliance, FinishesAHalfSolutionWithForcesOnItsProbes)
     const solve::Probes probes{nodes, {&wide}};
     const core::MatX S = selection(body, probes);
     const core::VecX f = core::VecX::LinSpaced(probes.size(), -1.0, 2.0);
-    auto motion = body.tissue.free_motion(rest, rest.u, {0.01, 0.01, false});
-    motion.half = body.tissue.begin(b);
+    auto at = body.tissue.linearise(rest, rest.u, {0.01, 0.01, false});
+    const solve::HalfSolution half = at->factor->begin(b);
     const core::VecX free = inverse * dense_load;
-    const core::VecX read = body.tissue.at(probes, motion, rest.u);
+    const core::VecX read = at->factor->read(probes, half);
     EXPECT_LT((read - S * free).norm(), 1e-10 * free.norm() * S.norm());
     const core::VecX exact = free + inverse * (S.transpose() * f);
-    const core::VecX u = body.space.gather(body.tissue.finish(motion, probes, f)).value;
+    const core::VecX u = body.space.gather(at->factor->finish(half, probes, f)).value;
     EXPECT_LT((u - exact).norm(), 1e-10 * exact.norm());
   }
 }
@@ -169,8 +169,8 @@ TEST(Supernodal, PinnedNodesHaveTheSameColumns)
   for (const std::vector<int>& nodes :
        {std::vector<int>{27, 31, 52}, {5, 31, 60}, {5, 17, 26, 27, 31, 60}}) {
     solve::ComplianceReport report;
-    const core::MatX a = plain.tissue.compliance().block({nodes, {}}, report);
-    const core::MatX b = pinned.tissue.compliance().block({nodes, {}}, report);
+    const core::MatX a = plain.tissue.factor().compliance().block({nodes, {}}, report);
+    const core::MatX b = pinned.tissue.factor().compliance().block({nodes, {}}, report);
     EXPECT_LT((a - b).norm(), 1e-11 * a.norm());
   }
 }
@@ -184,8 +184,8 @@ TEST(Reuse, CanBeTurnedOff)
     const tissue::TissueState rest = body.tissue.at_rest();
     solve::ComplianceReport report;
     for (int n = 1; n <= 3; ++n) {
-      body.tissue.free_motion(rest, rest.u, {0.01 * n, 0.01, false});
-      body.tissue.compliance().block({{62, 63}, {}}, report);
+      body.tissue.linearise(rest, rest.u, {0.01 * n, 0.01, false});
+      body.tissue.factor().compliance().block({{62, 63}, {}}, report);
       EXPECT_EQ(report.built, 6);
       EXPECT_EQ(report.reused, 0);
     }
@@ -198,7 +198,7 @@ TEST(LinearTissue, OneOperatorPerDistinctStepLength)
   test::Body body({2, 2, 2, core::Vec3(0.1, 0.1, 0.1)}, held(solve::Provider::automatic));
   const tissue::TissueState rest = body.tissue.at_rest();
   for (double h : {0.01, 0.005, 0.01, 0.005, 0.01})
-    body.tissue.free_motion(rest, rest.u, {h, h, false});
+    body.tissue.linearise(rest, rest.u, {h, h, false});
   EXPECT_EQ(body.ledger.assemblies, 2);
   EXPECT_EQ(body.ledger.factorisations, 2);
 }

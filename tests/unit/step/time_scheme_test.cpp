@@ -24,8 +24,8 @@ TEST(TimeSteps, OfEveryLengthFallAsGalileiSays)
 {
   for (bool second_order : {false, true}) {
     const Scene scenario = falling(second_order);
-    Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-    State state = *simulation.initial_state().state;
+    Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+    State state = step::initial_state(simulation)->state;
     // Nothing is driven: as if a step of the first one's length had led to the start, and the fall
     // had begun half of it earlier.
     constexpr double earlier = 0.005;
@@ -33,12 +33,12 @@ TEST(TimeSteps, OfEveryLengthFallAsGalileiSays)
 
     for (double h : {0.01, 0.01, 0.015, 0.03, 0.07, 0.01}) {
       t += h;
-      const StepResult result = simulation.step(state, {t, h, false});
-      ASSERT_TRUE(result.state) << result.why;
-      state = *result.state;
+      const Outcome<Accepted> result = step::advance(simulation, state, {t, h, false});
+      ASSERT_TRUE(result) << result.why();
+      state = result->state;
       const bool two = second_order && h <= 2.0 * before && h >= 0.2 * before;
       before = h;
-      for (int i = 0; i < simulation.space().owned(); ++i) {
+      for (int i = 0; i < simulation.space.owned(); ++i) {
         EXPECT_NEAR(state.tissue.u.node(i).z(), -5.0 * t * (t + 2.0 * earlier), 1e-10) << t;
         EXPECT_NEAR(state.tissue.v.node(i).z(), -10.0 * (earlier + (two ? t : t - 0.5 * h)), 1e-8)
             << t;
@@ -60,11 +60,11 @@ TEST(TimeSteps, OfStaticsTakeNoTime)
 TEST(TimeSteps, LeaveTheOldStateAlone)
 {
   const Scene scenario = falling(true);
-  Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const State start = *simulation.initial_state().state;
-  const State one = *simulation.step(start, {0.01, 0.01, false}).state;
+  Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const State start = step::initial_state(simulation)->state;
+  const State one = step::advance(simulation, start, {0.01, 0.01, false})->state;
   const core::VecX u = one.tissue.u.value;
-  simulation.step(one, {0.02, 0.01, false});
+  step::advance(simulation, one, {0.02, 0.01, false});
   EXPECT_EQ(one.tissue.u.value, u);
   EXPECT_EQ(start.tissue.u.value, core::VecX::Zero(start.tissue.u.value.size()));
   EXPECT_FALSE(start.before.has_value());

@@ -42,14 +42,14 @@ Scene pressed(double depth, int most = 50)
 TEST(TimeStepper, TakesWholeSteps)
 {
   const Scene scene = pressed(0.004);
-  Simulation simulation(scene, base::Comm(MPI_COMM_WORLD));
+  Model simulation(scene, base::Comm(MPI_COMM_WORLD));
   Listener listener;
   TimeStepper stepper(simulation, listener);
   stepper.run(stepper.start());
   EXPECT_EQ(listener.times, (std::vector<double>{0.0, 0.5, 1.0}));
   EXPECT_TRUE(listener.refused.empty());
   EXPECT_EQ(listener.progress.back().nominal, 2);
-  EXPECT_EQ(simulation.ledger().steps, 2);
+  EXPECT_EQ(simulation.ledger.steps, 2);
 }
 
 // A step that is too long is taken in halves, these in halves again; the run is told which of them
@@ -57,12 +57,12 @@ TEST(TimeStepper, TakesWholeSteps)
 TEST(TimeStepper, HalvesWhatIsRejected)
 {
   const Scene scene = pressed(0.02, 3);
-  Simulation simulation(scene, base::Comm(MPI_COMM_WORLD));
+  Model simulation(scene, base::Comm(MPI_COMM_WORLD));
   Listener listener;
   TimeStepper stepper(simulation, listener);
   const State end = stepper.run(stepper.start());
   ASSERT_FALSE(listener.refused.empty());
-  EXPECT_EQ(simulation.ledger().rejected_steps, static_cast<std::int64_t>(listener.refused.size()));
+  EXPECT_EQ(simulation.ledger.rejected_steps, static_cast<std::int64_t>(listener.refused.size()));
   EXPECT_EQ(listener.times.back(), 1.0);
   long whole = 0;
   for (std::size_t n = 1; n < listener.progress.size(); ++n) {
@@ -85,7 +85,7 @@ TEST(TimeStepper, HalvesWhatIsRejected)
 TEST(TimeStepper, GivesUpWithTheReason)
 {
   const Scene scene = pressed(0.05);  // through the bottom
-  Simulation simulation(scene, base::Comm(MPI_COMM_WORLD));
+  Model simulation(scene, base::Comm(MPI_COMM_WORLD));
   Listener listener;
   TimeStepper stepper(simulation, listener);
   const State start = stepper.start();

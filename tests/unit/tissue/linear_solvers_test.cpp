@@ -88,9 +88,9 @@ Outcome two_steps(const ModelCase& one, solve::Provider provider)
     TissueState state = body.tissue.at_rest();
     for (int n = 1; n <= 2; ++n) {
       const double h = 0.02 / n;  // other rates: linear tissue has a second operator as well
-      const FreeMotion motion = body.tissue.free_motion(state, state.u, {h * n, h, false});
-      if (motion.trouble) return {{}, *motion.trouble};
-      const fem::OwnedField u = body.tissue.finish(motion, {}, {});
+      auto motion = body.tissue.linearise(state, state.u, {h * n, h, false});
+      if (!motion) return {{}, motion.why()};
+      const fem::OwnedField u = motion->alone();
       state.v.value = (u.value - state.u.value) / h;
       state.u = u;
     }

@@ -88,21 +88,21 @@ TEST(Follower, AgreesWithDenseNewton)
   step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
   press(scenario, 0.006);  // 12 %
   const base::Comm comm(MPI_COMM_WORLD);
-  step::Simulation simulation(scenario, comm);
-  const step::StepResult result = solved(simulation);
+  step::Model simulation(scenario, comm);
+  const step::Outcome<step::Accepted> result = solved(simulation);
   Dense dense(scenario);
   dense.follow();
-  const fem::GlobalField u = simulation.space().gather(result.state->tissue.u);
+  const fem::GlobalField u = simulation.space.gather(result->state.tissue.u);
   EXPECT_LT((u.value - dense.u).norm(), 1e-9 * dense.u.norm());
-  const cavity::CavityReport& report = result.report.cavities[0];
+  const cavity::CavityReport& report = result->report.cavities[0];
   EXPECT_NEAR(report.pressure, dense.p, 1e-9 * dense.p);
   EXPECT_LE(report.error, 1e-12);
-  EXPECT_LE(result.report.linearisations, 5);  // Newton, cold
+  EXPECT_LE(result->report.linearisations, 5);  // Newton, cold
   // Reaction of the plate: K u less nothing, for the pressure does not act there.
   const VecX forces = dense.K * dense.u;
   Vec3 plate = Vec3::Zero();
   for (int node : mesh::group_nodes(scenario.mesh, "z1")) plate += forces.segment<3>(3 * node);
-  EXPECT_LT((result.report.holders.tools[0] - plate).norm(), 1e-8 * plate.norm());
+  EXPECT_LT((result->report.holders.tools[0] - plate).norm(), 1e-8 * plate.norm());
 }
 
 // Corotational tissue with a follower cavity: the same with a factor in every step and with old

@@ -26,10 +26,10 @@ TEST(Laws, VolumeOfTheWallIsThatOfTheFluid)
       one.fluid.ambient = 2e4;
       one.fluid.table =
           law::MonotoneSpline({-1e3, 0, 500, 1e3, 4e3}, {3e-5, 2.7e-5, 2.69e-5, 2.6e-5, 2e-5});
-      step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-      const step::StepResult result = solved(simulation);
-      const cavity::CavityReport& report = result.report.cavities[0];
-      const double V0 = simulation.cavities()->wall(0).volume();
+      step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+      const step::Outcome<step::Accepted> result = solved(simulation);
+      const cavity::CavityReport& report = result->report.cavities[0];
+      const double V0 = simulation.cavities->wall(0).volume();
       const double fluid = one.fluid.at(report.pressure, V0, 0.0).volume;
       EXPECT_GT(report.pressure, 100.0);
       EXPECT_LT(fluid, V0);

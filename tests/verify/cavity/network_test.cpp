@@ -24,9 +24,9 @@ double compliance(step::Scene scenario)
   for (cavity::CavitySettings& any : scenario.cavities.cavities) any.initial_pressure.reset();
   one.fluid.kind = law::FluidLaw::Kind::pressure;
   one.pressure.mean = 1e-3;
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const step::StepReport report = solved(simulation).report;
-  return (report.cavities[0].volume - simulation.cavities()->wall(0).volume()) / 1e-3;
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::StepReport report = solved(simulation)->report;
+  return (report.cavities[0].volume - simulation.cavities->wall(0).volume()) / 1e-3;
 }
 
 // A leak: p falls as backward Euler has it, p_0/(1 + h/RC)^n, which is exp(-t/RC) to first order;

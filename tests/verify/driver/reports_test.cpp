@@ -36,15 +36,15 @@ TEST(ErrorReport, IsAPartOfTheEnergyNorm)
   scenario.tissue.boundary.displacements = {{"x1", Vec3(0.002, 0.001, 0.0), std::nullopt}};
   scenario.output.folder = "error_report";
   scenario.output.quiet = true;
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const step::StepResult start = simulation.initial_state();
-  ASSERT_TRUE(start.state) << start.why;
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+  ASSERT_TRUE(start) << start.why();
   driver::Recorder recorder(simulation, scenario, {}, {});
   const driver::Log log(simulation, scenario);
-  driver::report_error(simulation, scenario.output, *start.state, recorder, log);
+  driver::report_error(simulation, scenario.output, start->state, recorder, log);
   recorder.close();
-  const double work = start.report.holders.tools[0].dot(Vec3(0.002, 0.001, 0.0));
-  base::on_root(simulation.space().comm(), [&] {
+  const double work = start->report.holders.tools[0].dot(Vec3(0.002, 0.001, 0.0));
+  base::on_root(simulation.space.comm(), [&] {
     const test::H5Reader run("error_report/run.h5");
     const double square = sum_of_squares(run.dataset("/error_estimate/tet").values);
     EXPECT_GT(square, 1e-3 * work);
@@ -61,16 +61,16 @@ TEST(PvCurve, HasTheLineOfLeastSquares)
   scenario.output.folder = "pv_report";
   scenario.output.displacement = false;
   scenario.output.quiet = true;
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const step::StepResult start = simulation.initial_state();
-  ASSERT_TRUE(start.state) << start.why;
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+  ASSERT_TRUE(start) << start.why();
   driver::Recorder recorder(simulation, scenario, {}, {});
   driver::Log log(simulation, scenario);
   Listener nobody;
-  driver::report_pv_curve(post::sweep_volume(simulation, settings, *start.state, nobody).curve,
+  driver::report_pv_curve(post::sweep_volume(simulation, settings, start->state, nobody).curve,
                           recorder, log);
   recorder.close();
-  base::on_root(simulation.space().comm(), [&] {
+  base::on_root(simulation.space.comm(), [&] {
     const test::H5Reader run("pv_report/run.h5");
     const std::vector<double> x = run.dataset("/pv_curve/volume_ratio").values;
     const std::vector<double> p = run.dataset("/pv_curve/pressure").values;
@@ -100,12 +100,12 @@ TEST(LockingGauge, IsHowMuchTooStiffACavityIs)
   scenario.tissue.materials[0].poisson = 0.49;
   scenario.output.folder = "gauge_report";
   scenario.output.quiet = true;
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  simulation.prepare();
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::prepare(simulation);
   driver::Recorder recorder(simulation, scenario, {}, {});
   driver::report_locking(simulation, recorder, driver::Log(simulation, scenario));
   recorder.close();
-  base::on_root(simulation.space().comm(), [&] {
+  base::on_root(simulation.space.comm(), [&] {
     const test::H5Reader run("gauge_report/run.h5");
     EXPECT_GT(run.dataset("/locking_gauge/ratio").values.at(0), 1.5);
   });

@@ -17,21 +17,21 @@ TEST(Balance, ActionEqualsReaction)
     step::Scene scenario = test::needle_scenario(distorted);
     scenario.needles[0].model = model;
     const base::Comm comm(MPI_COMM_WORLD);
-    step::Simulation simulation(scenario, comm);
-    step::State state = *simulation.initial_state().state;
+    step::Model simulation(scenario, comm);
+    step::State state = step::initial_state(simulation)->state;
     double worst = 0.0, largest = 0.0;
     for (int n = 1; n <= 60; ++n) {
       const core::TimeStep now{0.02 * n, 0.02, false};
-      const step::StepResult result = simulation.step(state, now);
-      ASSERT_TRUE(result.state) << result.why;
-      const fem::GlobalField unbalanced = simulation.space().gather(
-          simulation.tissue().residual(state.tissue, result.state->tissue.u, now));
+      const step::Outcome<step::Accepted> result = step::advance(simulation, state, now);
+      ASSERT_TRUE(result) << result.why();
+      const fem::GlobalField unbalanced = simulation.space.gather(
+          simulation.tissue.residual(state.tissue, result->state.tissue.u, now));
       Vec3 on_tissue = Vec3::Zero();
       for (int node = 0; node < scenario.mesh.node_count(); ++node)
         on_tissue -= unbalanced.node(node);
-      worst = std::max(worst, (result.report.needles[0].base.force - on_tissue).norm());
+      worst = std::max(worst, (result->report.needles[0].base.force - on_tissue).norm());
       largest = std::max(largest, on_tissue.norm());
-      state = *result.state;
+      state = result->state;
     }
     EXPECT_GT(largest, 0.1);
     EXPECT_LT(worst, 1e-10 * largest);
@@ -49,15 +49,15 @@ TEST(Balance, ActionEqualsReactionInEquilibrium)
     scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);
     scenario.needles[0].motion.inserted = 0.03;
     const base::Comm comm(MPI_COMM_WORLD);
-    step::Simulation simulation(scenario, comm);
-    const step::StepResult start = simulation.initial_state();
-    ASSERT_TRUE(start.state) << start.why;
-    const fem::GlobalField unbalanced = simulation.space().gather(simulation.tissue().residual(
-        simulation.tissue().at_rest(), start.state->tissue.u, {0, 1, true}));
+    step::Model simulation(scenario, comm);
+    const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+    ASSERT_TRUE(start) << start.why();
+    const fem::GlobalField unbalanced = simulation.space.gather(simulation.tissue.residual(
+        simulation.tissue.at_rest(), start->state.tissue.u, {0, 1, true}));
     Vec3 on_tissue = Vec3::Zero();
     for (int node = 0; node < scenario.mesh.node_count(); ++node)
       on_tissue -= unbalanced.node(node);
-    const Vec3 needle = start.report.needles[0].base.force;
+    const Vec3 needle = start->report.needles[0].base.force;
     EXPECT_GT(needle.norm(), 1e-3);
     EXPECT_LT((on_tissue - needle).norm(), 1e-6 * needle.norm());
   }
@@ -94,14 +94,15 @@ TEST(Balance, AGapThatASupportHoldsOpenIsRefused)
   scenario.needles[0].motion.trajectory =
       core::parse_csv("time,x,y,z\n0,-0.05,0.02,0.02\n1,-0.05,0.021,0.02\n", "aside.csv");
   scenario.time.end = 0.04;
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const step::StepResult start = simulation.initial_state();
-  ASSERT_TRUE(start.state) << start.why;
-  const step::StepResult aside = simulation.step(*start.state, {0.01, 0.01, true});
-  ASSERT_FALSE(aside.state);
-  EXPECT_NE(aside.why.find("needle 'needle' where the undeformed tissue has (0, 0.02, 0.02) m"),
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+  ASSERT_TRUE(start) << start.why();
+  const step::Outcome<step::Accepted> aside =
+      step::advance(simulation, start->state, {0.01, 0.01, true});
+  ASSERT_FALSE(aside);
+  EXPECT_NE(aside.why().find("needle 'needle' where the undeformed tissue has (0, 0.02, 0.02) m"),
             std::string::npos)
-      << aside.why;
+      << aside.why();
 }
 
 // A needle through a held face slips there as anywhere else, rigid or not: its base carries the

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "constraint/reduce.hpp"
+#include "constraint/system.hpp"
 #include "core/dense.hpp"
 #include "support/body.hpp"
 #include "support/dense.hpp"
@@ -34,14 +34,13 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   const double h = 0.02;
   const core::TimeStep now{h, h, false};
   const tissue::TissueState rest = body.tissue.at_rest();
-  const auto motion = body.tissue.free_motion(rest, rest.u, now);
+  auto at = body.tissue.linearise(rest, rest.u, now);
   const auto linear = needle.linearise(needle.initial(), needle.initial(), now);
-  const solve::Probes probes = set.probes();
+  const constraint::System system(set, {{linear.held, linear.factor, linear.free_increment}});
   solve::ComplianceReport report;
-  const core::MatX C = body.tissue.compliance().block(probes, report);
+  const core::MatX C = at->factor->compliance().block(system.probes(), report);
   const law::Problem problem =
-      constraint::reduce(set, C, body.tissue.at(probes, motion, rest.u),
-                         {{linear.held, linear.factor, linear.free_increment}});
+      system.problem(system.compliance(C), at->factor->read(system.probes(), at->forward()));
 
   const auto& material = settings.materials[0];
   core::MatX A = test::dense_operator(body.mesh, material, 1.0 + material.rayleigh_stiffness / h,

@@ -15,13 +15,14 @@ TEST(State, ARejectedStepLeavesNoTrace)
   step::Scene scenario = test::needle_scenario(distorted);
   scenario.tissue.model = tissue::Model::corotational;
   const base::Comm comm(MPI_COMM_WORLD);
-  step::Simulation plain_run(scenario, comm), tried(scenario, comm);
-  step::State a = *plain_run.initial_state().state, b = *tried.initial_state().state;
+  step::Model plain_run(scenario, comm), tried(scenario, comm);
+  step::State a = step::initial_state(plain_run)->state, b = step::initial_state(tried)->state;
   for (int n = 1; n <= 20; ++n) {
     const core::TimeStep now{0.02 * n, 0.02, false};
-    tried.step(b, {0.02 * n + 5.0, 5.0, false});  // far too long; accepted or not, it is dropped
-    a = *plain_run.step(a, now).state;
-    b = *tried.step(b, now).state;
+    step::advance(tried, b,
+                  {0.02 * n + 5.0, 5.0, false});  // far too long; accepted or not, it is dropped
+    a = step::advance(plain_run, a, now)->state;
+    b = step::advance(tried, b, now)->state;
   }
   EXPECT_LT((a.tissue.u.value - b.tissue.u.value).norm(), 1e-14);
   EXPECT_EQ(a.insertions[0].points.size(), b.insertions[0].points.size());

@@ -65,11 +65,11 @@ TEST(Travel, CountsOnlyWhatGoesAlongTheNeedle)
 TEST(Travel, OfADroppedStepDoesNotCount)
 {
   const step::Scene scenario = test::needle_scenario(test::plain);
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  step::State state = *simulation.initial_state().state;
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::State state = step::initial_state(simulation)->state;
   for (int n = 1; n <= 3; ++n) {
-    simulation.step(state, {0.02 * n + 0.5, 0.52, false});
-    state = *simulation.step(state, {0.02 * n, 0.02, false}).state;
+    step::advance(simulation, state, {0.02 * n + 0.5, 0.52, false});
+    state = step::advance(simulation, state, {0.02 * n, 0.02, false})->state;
   }
   EXPECT_NEAR(state.needles[0].travel, 0.02 * 0.06, 1e-15);
 }

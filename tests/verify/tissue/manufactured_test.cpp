@@ -149,7 +149,7 @@ fem::GlobalField solved(HeldCube& body, const Manufactured& exact)
   tissue::Configuration at;
   body.tissue.configure(body.space.with_ghosts(given), at);
   load.value -= body.tissue.operate_by_elements(at, {}, given).value;
-  return body.space.gather({given.value + body.tissue.answer(load).value});
+  return body.space.gather({given.value + body.tissue.factor().answer(load).value});
 }
 
 Errors manufactured_errors(bool quadratic, Dilatation dilatation, double poisson, int n)
@@ -244,7 +244,7 @@ double inf_sup(bool quadratic, int n)
   core::MatX answers(3 * body.mesh.node_count(), corners);
   for (int v = 0; v < corners; ++v)
     answers.col(v) = body.space
-                         .gather(body.tissue.answer(
+                         .gather(body.tissue.factor().answer(
                              body.space.restrict_to_owned({core::VecX(B.row(v).transpose())})))
                          .value;
   const core::VecX scale = M.cwiseSqrt().cwiseInverse();

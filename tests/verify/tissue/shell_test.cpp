@@ -38,14 +38,14 @@ double lame_error(const Kind& kind, int levels, int layers, double poisson)
   scenario.tissue.dilatation = kind.dilatation;
   scenario.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::pressure;
   scenario.cavities.cavities[0].pressure.mean = 1.0;
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const step::StepResult result = simulation.initial_state();
-  if (!result.state) throw core::solver_error(result.why);
-  const double V0 = simulation.cavities()->wall(0).volume();
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::Outcome<step::Accepted> result = step::initial_state(simulation);
+  if (!result) throw core::solver_error(result.why());
+  const double V0 = simulation.cavities->wall(0).volume();
   const double u =
       a * a * a / (b * b * b - a * a * a) *
       ((1.0 - 2.0 * poisson) * a / E + b * b * b * (1.0 + poisson) / (2.0 * E * a * a));
-  return 3.0 * u / a / (result.report.cavities[0].volume / V0 - 1.0) - 1.0;
+  return 3.0 * u / a / (result->report.cavities[0].volume / V0 - 1.0) - 1.0;
 }
 
 // The stiffness dP/dV on meshes with like numbers of nodes, an eighth of them in each octant.
@@ -91,12 +91,12 @@ double pressure_at(const step::Scene& scene, double l)
   step::Scene scenario = scene;
   scenario.cavities.cavities[0].volume =
       l * l * l * cavity::Wall(scenario.mesh, "wall", false).volume();
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  const step::StepResult result = simulation.initial_state();
-  if (!result.state) throw core::solver_error(result.why);
-  std::printf("  %d linearisations, %lld factors\n", result.report.linearisations,
-              static_cast<long long>(simulation.ledger().factorisations));
-  return result.report.cavities[0].pressure;
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::Outcome<step::Accepted> result = step::initial_state(simulation);
+  if (!result) throw core::solver_error(result.why());
+  std::printf("  %d linearisations, %lld factors\n", result->report.linearisations,
+              static_cast<long long>(simulation.ledger.factorisations));
+  return result->report.cavities[0].pressure;
 }
 
 step::Scene neo_hookean_sphere(int levels, int layers, double outer)

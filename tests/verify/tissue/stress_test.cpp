@@ -110,10 +110,10 @@ TEST(Stress, LameShellConverges)
     cavity::CavitySettings& fluid = scenario.cavities.cavities[0];
     fluid.fluid.kind = law::FluidLaw::Kind::pressure;
     fluid.pressure.mean = p;
-    step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-    const step::StepResult result = simulation.initial_state();
-    ASSERT_TRUE(result.state) << result.why;
-    const tissue::StressField field = simulation.tissue().stresses(result.state->tissue.u);
+    step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+    const step::Outcome<step::Accepted> result = step::initial_state(simulation);
+    ASSERT_TRUE(result) << result.why();
+    const tissue::StressField field = simulation.tissue.stresses(result->state.tissue.u);
     double off = 0.0, all = 0.0, true_error = 0.0;
     for (int t = 0; t < scenario.mesh.tet_count(); ++t) {
       Vec3 middle = Vec3::Zero();

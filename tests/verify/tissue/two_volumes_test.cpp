@@ -49,16 +49,16 @@ TEST(TwoVolumes, KeepADilatationEach)
     scenario.tissue.materials = {soft, stiff};
     scenario.tissue.dilatation = tissue::Dilatation::nodal;
     scenario.tissue.boundary.displacements = {{"x1", Vec3(-1e-4, 0.0, 0.0), std::nullopt}};
-    step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-    const step::StepResult start = simulation.initial_state();
-    ASSERT_TRUE(start.state) << start.why;
-    const fem::GlobalField u = simulation.space().gather(start.state->tissue.u);
+    step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+    const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+    ASSERT_TRUE(start) << start.why();
+    const fem::GlobalField u = simulation.space.gather(start->state.tissue.u);
     const double of_soft = 1.0 / (soft.lambda() + 2.0 * soft.mu());
     const double of_stiff = 1.0 / (stiff.lambda() + 2.0 * stiff.mu());
     for (double between : at(scenario, u, 0.02))
       EXPECT_NEAR(between, -1e-4 * of_soft / (of_soft + of_stiff), 1e-12);
     const double force = 1e-4 / 0.02 / (of_soft + of_stiff) * 0.02 * 0.02;
-    EXPECT_NEAR(start.report.holders.tools[0].x(), -force, 1e-9 * force);
+    EXPECT_NEAR(start->report.holders.tools[0].x(), -force, 1e-9 * force);
   }
 }
 
@@ -70,14 +70,14 @@ TEST(Traction, IsThatOfTheEndOfTheStep)
   scenario.tissue.materials = {{5000.0, 0.3, 1000.0, 0.0, 0.0}};
   scenario.tissue.boundary.tractions = {
       {"x1", Vec3(20.0, 0.0, 0.0), core::parse_csv("time,factor\n0,0\n1,1\n", "ramp.csv")}};
-  step::Simulation simulation(scenario, base::Comm(MPI_COMM_WORLD));
-  step::StepResult result = simulation.initial_state();
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  step::Outcome<step::Accepted> result = step::initial_state(simulation);
   const tissue::Material& m = scenario.tissue.materials[0];
   const double whole = 20.0 / (m.lambda() + 2.0 * m.mu()) * 0.04;
   for (int n = 1; n <= 4; ++n) {
-    result = simulation.equilibrium(*result.state, {0.25 * n, 0.25, true});
-    ASSERT_TRUE(result.state) << result.why;
-    const fem::GlobalField u = simulation.space().gather(result.state->tissue.u);
+    result = step::equilibrium(simulation, result->state, {0.25 * n, 0.25, true});
+    ASSERT_TRUE(result) << result.why();
+    const fem::GlobalField u = simulation.space.gather(result->state.tissue.u);
     for (double end : at(scenario, u, 0.04)) EXPECT_NEAR(end, 0.25 * n * whole, 1e-10 * whole);
   }
 }

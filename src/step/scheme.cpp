@@ -1,7 +1,9 @@
-#include "step/simulation.hpp"
+#include "step/scheme.hpp"
 
 namespace trocar::step {
 namespace {
+
+using core::Vec3;
 
 /// What a velocity at τ from the end of the step stands for there; see past_of.
 struct Moments
@@ -23,7 +25,7 @@ Moments moments(const Differenced& v, double tau)
 }
 
 /// û = u_n + u (u_n - u_before), and v̂ likewise.
-struct Past
+struct Extrapolation
 {
   double u, v;
 };
@@ -33,7 +35,8 @@ void extrapolate(double c, const Vec3& before, Vec3& value)
   value += c * (value - before);
 }
 
-void extrapolate(const Past& past, const needle::NeedleState& before, needle::NeedleState& needle)
+void extrapolate(const Extrapolation& past, const needle::NeedleState& before,
+                 needle::NeedleState& needle)
 {
   for (std::size_t i = 0; i < needle.v.size(); ++i) {
     extrapolate(past.u, before.shaft.x[i], needle.shaft.x[i]);
@@ -44,16 +47,16 @@ void extrapolate(const Past& past, const needle::NeedleState& before, needle::Ne
   }
 }
 
-}  // namespace
-
 /// How the velocity of a state, from which a step of length h begins, was differenced. At a start
 /// it is exact. Where nothing is driven no force shows that, and the first step may have the
 /// operator of all others: the start then counts as one more step of the same length.
-Differenced Simulation::velocity_of(const State& state, double h) const
+Differenced velocity_of(const Model& model, const State& state, double h)
 {
   if (state.h > 0.0) return state.velocity;
-  return driven_at_start_ ? Differenced{} : differenced_once(h);
+  return model.driven_at_start ? Differenced{} : differenced_once(h);
 }
+
+}  // namespace
 
 // Velocities of positions that rows prescribe are exact differences, whose error changes with the
 // length of the step; differenced again for the acceleration it would be divided by that length:
@@ -71,20 +74,23 @@ Differenced Simulation::velocity_of(const State& state, double h) const
 // no lag, curvature -h (h + h_before)/6. Its first step is backward Euler's, and one whose length
 // is out of proportion to that before; where the three velocities have no sound acceleration, the
 // last two make it, to first order.
-const State& Simulation::past_of(const State& old, core::TimeStep& now, State& extrapolated,
-                                 Differenced& velocity) const
+Scheme::Scheme(const Model& model, const State& old, const core::TimeStep& asked)
+    : now_(asked), past_(&old), old_velocity_(velocity_of(model, old, asked.h))
 {
-  velocity = {};
-  if (now.is_static) return old;
+  if (now_.is_static) return;
   constexpr double longest = 2.0 + 1e-6, shortest = 0.2 - 1e-6;  // stable up to 1 + √2
-  const double h = now.h, r = old.h > 0.0 ? h / old.h : 0.0;
-  velocity = differenced_once(h);
-  now.interval = h - velocity.lag + velocity_of(old, h).lag;
-  if (!old.before || r > longest || r < shortest) return old;
+  const double h = now_.h, r = old.h > 0.0 ? h / old.h : 0.0;
+  velocity_ = differenced_once(h);
+  now_.interval = h - velocity_.lag + old_velocity_.lag;
+  if (old.before && r <= longest && r >= shortest) extrapolate(old, r);
+}
 
-  now.lead = (1.0 + 2.0 * r) / (1.0 + r);
-  velocity = {0.0, -h * (h + old.h) / 6.0};
-  const Moments end = moments(velocity, 0.0);
+void Scheme::extrapolate(const State& old, double r)
+{
+  const double h = now_.h;
+  now_.lead = (1.0 + 2.0 * r) / (1.0 + r);
+  velocity_ = {0.0, -h * (h + old.h) / 6.0};
+  const Moments end = moments(velocity_, 0.0);
   const Moments one = moments(old.velocity, -h) - end;
   const Moments two = moments(old.before->velocity, -h - old.h) - end;
   // 1/Σc and c_two/Σc of the three: some sequences (halves of halves) have no such acceleration, or
@@ -92,15 +98,16 @@ const State& Simulation::past_of(const State& old, core::TimeStep& now, State& e
   constexpr double least = 0.25, most = 2.5;  // of h
   const double interval = (one.m * two.q - two.m * one.q) / (one.q - two.q);
   const bool three = interval >= least * h && interval <= most * h;
-  now.interval = three ? interval : -moments(old.velocity, -h).m;
-  const Past past{r * r / (1.0 + 2.0 * r), three ? -one.q / (one.q - two.q) : 0.0};
-  extrapolated.tissue = old.tissue;
-  extrapolated.tissue.u.value += past.u * (old.tissue.u.value - old.before->tissue.u.value);
-  extrapolated.tissue.v.value += past.v * (old.tissue.v.value - old.before->tissue.v.value);
-  extrapolated.needles = old.needles;
-  for (std::size_t i = 0; i < needles_.size(); ++i)
-    extrapolate(past, old.before->needles[i], extrapolated.needles[i]);
-  return extrapolated;
+  now_.interval = three ? interval : -moments(old.velocity, -h).m;
+  const Extrapolation by{r * r / (1.0 + 2.0 * r), three ? -one.q / (one.q - two.q) : 0.0};
+  State& past = extrapolated_;
+  past.tissue = old.tissue;
+  past.tissue.u.value += by.u * (old.tissue.u.value - old.before->tissue.u.value);
+  past.tissue.v.value += by.v * (old.tissue.v.value - old.before->tissue.v.value);
+  past.needles = old.needles;
+  for (std::size_t i = 0; i < past.needles.size(); ++i)
+    step::extrapolate(by, old.before->needles[i], past.needles[i]);
+  past_ = &past;
 }
 
 }  // namespace trocar::step

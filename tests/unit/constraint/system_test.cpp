@@ -1,4 +1,4 @@
-#include "constraint/reduce.hpp"
+#include "constraint/system.hpp"
 #include "support/dense.hpp"
 
 #include <gtest/gtest.h>
@@ -120,14 +120,15 @@ TEST(Rows, AnchorsTakeTheMeanOfTheirNodes)
   EXPECT_LT((mean - Vec3(0.4 * 4 + 0.6 * 30, 1, 0)).norm(), 1e-14);
 }
 
-TEST(Reduction, IsTheDenseProductOfRowsWrittenOut)
+TEST(System, IsTheDenseProductOfRowsWrittenOut)
 {
   const Set set = hand_made();
   const Dense dense;
   const Bodies bodies;
   const MatX C = spd(13, 0.7);
   const VecX free = numbers(13, 1, 1.1);
-  const law::Problem problem = reduce(set, C, free, bodies.all);
+  const System system(set, bodies.all);
+  const law::Problem problem = system.problem(system.compliance(C), free);
   const MatX W = dense.H * C * dense.H.transpose() + bodies.gives + dense.coupling;
   const VecX gap = (VecX(4) << 1e-3, -2e-3, 5e-4, -1e-4).finished();
   const VecX g = gap + dense.H * free - bodies.moved;
@@ -137,19 +138,20 @@ TEST(Reduction, IsTheDenseProductOfRowsWrittenOut)
 }
 
 // A body without free dofs, such as a rigid needle on its holder, adds nothing.
-TEST(Reduction, LeavesBodiesOutThatCannotMove)
+TEST(System, LeavesBodiesOutThatCannotMove)
 {
   const Set set = hand_made();
   const Dense dense;
   const MatX C = spd(13, 0.7);
   SmallBody rigid;
   rigid.held = 5;
-  const law::Problem problem = reduce(set, C, VecX::Zero(13), {rigid, rigid});
+  const System system(set, {rigid, rigid});
+  const law::Problem problem = system.problem(system.compliance(C), VecX::Zero(13));
   const MatX W = dense.H * C * dense.H.transpose() + dense.coupling;
   EXPECT_LT((problem.W - W).norm(), 1e-14 * W.norm());
 }
 
-TEST(Reduction, GivesEveryRowItsOwnLaw)
+TEST(System, GivesEveryRowItsOwnLaw)
 {
   Set set;
   for (int i = 0; i < 3; ++i) {
@@ -166,7 +168,8 @@ TEST(Reduction, GivesEveryRowItsOwnLaw)
     set.add(row);
   }
   const MatX C = spd(9, 0.4);
-  const law::Problem problem = reduce(set, C, VecX::Zero(9), {});
+  const System system(set, {});
+  const law::Problem problem = system.problem(system.compliance(C), VecX::Zero(9));
   EXPECT_EQ(problem.kind,
             (std::vector{law::RowKind::bilateral, law::RowKind::box, law::RowKind::push}));
   EXPECT_EQ(problem.bound, VecX(Vec3(0.0, 0.5, 1.0)));
@@ -180,29 +183,55 @@ TEST(Reduction, GivesEveryRowItsOwnLaw)
 }
 
 // What a row reads, it pushes with: work counted at the rows is that at the nodes.
-TEST(Reduction, ForcesAreTheAdjointOfDisplacements)
+TEST(System, ForcesAreTheAdjointOfDisplacements)
 {
   const Set set = hand_made();
   const Dense dense;
   const VecX u = numbers(13, 1, 0.3), lambda = numbers(4, 1, 2.0);
-  EXPECT_LT((row_displacements(set, u) - dense.H * u).norm(), 1e-15);
-  EXPECT_LT((probe_forces(set, lambda) - dense.H.transpose() * lambda).norm(), 1e-15);
+  const System system(set, Bodies().all);
+  EXPECT_LT((system.row_displacements(u) - dense.H * u).norm(), 1e-15);
+  EXPECT_LT((system.probe_forces(lambda) - dense.H.transpose() * lambda).norm(), 1e-15);
   for (int body : {0, 1}) {
     const MatX& lever = dense.levers[static_cast<std::size_t>(body)];
-    const VecX forces = body_forces(set, lambda, body, lever.cols());
+    const VecX forces = system.body_forces(lambda, body);
     EXPECT_LT((forces - lever.transpose() * lambda).norm(), 1e-15);
   }
 }
 
-TEST(Reduction, YieldingIsTheWorkThatBodiesAndSoftRowsTake)
+TEST(System, YieldsTheWorkThatBodiesAndSoftRowsTake)
 {
   const Set set = hand_made();
   const Bodies bodies;
   MatX gives = bodies.gives + Dense().coupling;
   gives(1, 1) += 0.3;
   const VecX a = numbers(4, 1, 0.9), b = numbers(4, 1, 0.1);
-  EXPECT_NEAR(yielding(set, bodies.all, a, b), a.dot(gives * b), 1e-14);
-  EXPECT_NEAR(yielding(set, bodies.all, b, a), a.dot(gives * b), 1e-14);
+  const System system(set, bodies.all);
+  EXPECT_NEAR(system.yielded(a, b), a.dot(gives * b), 1e-14);
+  EXPECT_NEAR(system.yielded(b, a), a.dot(gives * b), 1e-14);
+}
+
+// Laws that bend change gaps and couplings; W follows them, the rest stays.
+TEST(System, FollowsLawsThatAreLinearisedAnew)
+{
+  const Bodies bodies;
+  System system(hand_made(), bodies.all);
+  const MatX C = spd(13, 0.7);
+  const MatX before = system.compliance(C);
+  EXPECT_FALSE(system.settle(VecX::Zero(4)));  // no law bends
+  int calls = 0;
+  system.relinearise = [&](const VecX& lambda, Set& set) {
+    set.couplings() = {{0, 2, 0.15}, {3, 3, 0.7}};
+    set.set_gap(1, lambda[1]);
+    return ++calls < 2;
+  };
+  EXPECT_TRUE(system.settle(Eigen::Vector4d(0, 0.25, 0, 0)));
+  MatX change = system.compliance(C) - before;
+  EXPECT_NEAR(change(0, 2), 0.1, 1e-13);
+  EXPECT_NEAR(change(2, 0), 0.1, 1e-13);
+  EXPECT_NEAR(change.norm(), 0.1 * std::sqrt(2.0), 1e-12);
+  const VecX g = system.problem(before, VecX::Zero(13)).g;
+  EXPECT_NEAR(g[1] + bodies.moved[1], 0.25, 1e-14);
+  EXPECT_FALSE(system.settle(VecX::Zero(4)));  // now they are right
 }
 
 /// Two rows of coupling points in tets of the body, one of a tip's support, and one whose node z0
@@ -224,7 +253,7 @@ Set rows_on(const mesh::Mesh& mesh)
 }
 
 // The tissue's own compliance and free motion, whichever ranks own the nodes.
-TEST(Reduction, OfATissueIsThatOfItsDenseOperator)
+TEST(System, OfATissueIsThatOfItsDenseOperator)
 {
   tissue::TissueSettings settings;
   settings.model = tissue::Model::linear;
@@ -233,12 +262,13 @@ TEST(Reduction, OfATissueIsThatOfItsDenseOperator)
   test::Body body({4, 3, 3, Vec3(0.1, 0.08, 0.08), 0.2}, settings);
   const double h = 0.02;
   const tissue::TissueState rest = body.tissue.at_rest();
-  const auto motion = body.tissue.free_motion(rest, rest.u, {h, h, false});
+  auto at = body.tissue.linearise(rest, rest.u, {h, h, false});
   const Set set = rows_on(body.mesh);
-  const solve::Probes probes = set.probes();
+  const System system(set, {});
   solve::ComplianceReport report;
-  const MatX C = body.tissue.compliance().block(probes, report);
-  const law::Problem problem = reduce(set, C, body.tissue.at(probes, motion, rest.u), {});
+  const MatX C = at->factor->compliance().block(system.probes(), report);
+  const law::Problem problem =
+      system.problem(system.compliance(C), at->factor->read(system.probes(), at->forward()));
 
   MatX A = test::dense_operator(body.mesh, {}, 1.0, 1.0 / (h * h));
   test::fix_dense(A, body.tissue.fixed(), body.mesh.node_count());
@@ -255,7 +285,7 @@ TEST(Reduction, OfATissueIsThatOfItsDenseOperator)
   const MatX W = H * test::solved(A, H.transpose());
   EXPECT_LT((problem.W - W).norm(), 1e-10 * W.norm());
   EXPECT_EQ(problem.W.row(3).norm(), 0.0);  // held: nothing can move it
-  const VecX free = H * body.space.gather(body.tissue.finish(motion, {}, {})).value;
+  const VecX free = H * body.space.gather(at->alone()).value;
   EXPECT_GT(free.norm(), 1e-4);
   EXPECT_LT((problem.g - gap - free).norm(), 1e-10 * free.norm());
 }

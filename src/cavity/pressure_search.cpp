@@ -1,0 +1,80 @@
+#include "cavity/pressure_search.hpp"
+
+#include <string>
+
+namespace trocar::cavity {
+
+/// How the tissue alone answers to the pressure of every frozen cavity, once for each operator.
+const PressureAnswers& PressureSearch::unit_pressure_responses(const State& state,
+                                                               const TimeStep& now,
+                                                               solve::LaggedFactor& factor)
+{
+  constexpr std::size_t most_kept = 2;
+  const std::vector<int> which = cavities_->frozen(state);
+  const auto known = responses_.find(now.rates());
+  // Pressures that are given at the start only join later.
+  if (known != responses_.end() && known->second.per_p.size() == which.size()) return known->second;
+  if (responses_.size() == most_kept) responses_.clear();
+  PressureAnswers answers{{}, VecX::Zero(static_cast<Eigen::Index>(which.size()))};
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    answers.per_p.push_back(factor.answer(cavities_->unit_load(which[k])));
+    double& gain = answers.gain[static_cast<Eigen::Index>(k)];
+    gain = cavities_->settings().cavities[static_cast<std::size_t>(which[k])].gain;
+    if (cavities_->proportional() && gain == 0.0)
+      gain = cavities_->line_gain(which[k], answers.per_p.back());
+  }
+  return responses_[now.rates()] = std::move(answers);
+}
+
+/// The same when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
+PressureAnswers PressureSearch::with_rows(const constraint::Laws& laws,
+                                          const PressureAnswers& alone,
+                                          solve::LaggedFactor& factor) const
+{
+  PressureAnswers answers = alone;
+  const constraint::System& system = laws.system();
+  if (system.empty() || cavities_->proportional()) return answers;
+  for (OwnedField& w : answers.per_p) {
+    const VecX moved = system.row_displacements(solve::read(system.probes(), w, factor.space()));
+    const VecX more = law::response(laws.problem(), laws.multipliers(), moved);
+    w.value += factor.answer(system.forces(more, factor.space())).value;
+  }
+  return answers;
+}
+
+core::Outcome<constraint::Saddle> PressureSearch::solve(constraint::Laws& laws,
+                                                        solve::Linearisation& at, const VecX& start,
+                                                        const TimeStep& now, State& state)
+{
+  const constraint::System& system = laws.system();
+  const OwnedField free = at.alone();
+  const PressureAnswers& alone = unit_pressure_responses(state, now, *at.factor);
+  const std::vector<int> which = cavities_->frozen(state);
+  cavities_->take({}, {}, now, state);
+  for (updates_ = 0;; ++updates_) {
+    const VecX p = cavities_->pressures(state)(which);
+    OwnedField u = free;  // + A⁻¹Hᵀλ + Σ p A⁻¹g_0
+    for (std::size_t k = 0; k < alone.per_p.size(); ++k)
+      u.value += p[static_cast<Eigen::Index>(k)] * alone.per_p[k].value;
+    if (!system.empty()) {
+      const OwnedField moved{u.value - at.iterate.value};
+      const VecX at_probes = solve::read(system.probes(), moved, at.space());
+      if (const auto met = laws.meet(*at.factor, at_probes, start); !met) return met.refusal();
+      u.value += at.factor->answer(system.forces(laws.multipliers(), at.space())).value;
+    }
+    ++laws.report().passes;
+    const Shape shape = cavities_->shape(u);
+    if (cavities_->closed(state, shape, now))
+      return constraint::Saddle{std::move(u), laws.take(), laws.problem()};
+    if (updates_ == cavities_->most_updates())
+      return core::Refusal{"the volumes of the cavities are not reached in " +
+                           std::to_string(updates_) + " updates of the pressure"};
+    const auto next =
+        cavities_->next_pressures(state, shape, with_rows(laws, alone, *at.factor), now);
+    if (!next) return next.refusal();
+    Cavities::set_pressures(which, *next, state);
+    ++ledger_->pressure_updates;
+  }
+}
+
+}  // namespace trocar::cavity

@@ -1,0 +1,209 @@
+#include "driver/history.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace trocar::driver {
+namespace {
+
+using core::Vec3;
+
+/// Histories as they are named, each with its unit and where its numbers come from.
+class List
+{
+ public:
+  template <class Value>
+  void number(const std::string& name, const std::string& unit, const Value& value)
+  {
+    list_.push_back({{name, 0, unit}, [value](const Moment& now) {
+                       return std::vector<double>{static_cast<double>(value(now))};
+                     }});
+  }
+  template <class Value>
+  void vector(const std::string& name, const std::string& unit, const Value& value)
+  {
+    list_.push_back({{name, 3, unit}, [value](const Moment& now) {
+                       const Vec3 v = value(now);
+                       return std::vector<double>{v.x(), v.y(), v.z()};
+                     }});
+  }
+  std::vector<History> take() { return std::move(list_); }
+
+ private:
+  std::vector<History> list_;
+};
+
+void add_needle(const std::string& name, std::size_t i, List& list)
+{
+  const std::string at = "needle/" + name + "/";
+  const auto report = [i](const Moment& now) -> const step::NeedleReport& {
+    return now.report.needles[i];
+  };
+  const auto insertion = [i](const Moment& now) -> const insertion::InsertionState& {
+    return now.state.insertions[i];
+  };
+  list.vector(at + "tip", "m", [=](const Moment& now) { return report(now).tip; });
+  list.number(at + "depth", "m", [=](const Moment& now) { return report(now).depth; });
+  list.number(at + "travel", "m", [i](const Moment& now) { return now.state.needles[i].travel; });
+  list.vector(at + "base_force", "N", [=](const Moment& now) { return report(now).base.force; });
+  list.vector(at + "base_moment", "N m",
+              [=](const Moment& now) { return report(now).base.moment; });
+  list.number(at + "shaft_friction", "N",
+              [=](const Moment& now) { return report(now).coupling.shaft_friction; });
+  list.number(at + "tip_force", "N",
+              [=](const Moment& now) { return report(now).coupling.tip_force; });
+  list.number(at + "friction_work", "J",
+              [=](const Moment& now) { return report(now).coupling.friction_work; });
+  list.number(at + "cutting_work", "J",
+              [=](const Moment& now) { return report(now).coupling.cutting_work; });
+  list.number(at + "punctures", "1",
+              [=](const Moment& now) { return insertion(now).tip.punctures; });
+  list.number(at + "points", "1", [=](const Moment& now) { return insertion(now).points.size(); });
+  list.number(at + "slipping", "1", [=](const Moment& now) {
+    const auto& points = insertion(now).points;
+    return std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.stuck; });
+  });
+}
+
+void add_cavity(const std::string& name, std::size_t i, List& list)
+{
+  const std::string at = "cavity/" + name + "/";
+  const auto report = [i](const Moment& now) -> const cavity::CavityReport& {
+    return now.report.cavities[i];
+  };
+  list.number(at + "pressure", "Pa", [=](const Moment& now) { return report(now).pressure; });
+  list.number(at + "volume", "m^3", [=](const Moment& now) { return report(now).volume; });
+  list.number(at + "volume_error", "1", [=](const Moment& now) { return report(now).error; });
+  list.number(at + "iterations", "1", [=](const Moment& now) { return report(now).iterations; });
+  list.number(at + "alarm", "1", [=](const Moment& now) { return report(now).alarm ? 1 : 0; });
+}
+
+void add_edge(const std::string& name, std::size_t e, List& list)
+{
+  const std::string at = "edge/" + name + "/";
+  const auto edge = [e](const Moment& now) -> const cavity::EdgeState& {
+    return now.state.cavities.edge[e];
+  };
+  list.number(at + "flow", "m^3/s", [=](const Moment& now) { return edge(now).flow; });
+  list.number(at + "moved", "m^3", [=](const Moment& now) { return edge(now).moved; });
+  list.number(at + "state", "1", [=](const Moment& now) {
+    return edge(now).needle_in ? 2 : edge(now).pierced ? 1 : 0;
+  });
+}
+
+void add_holders(const tissue::BoundaryConditions& boundary, List& list)
+{
+  for (std::size_t k = 0; k < boundary.displacements.size(); ++k)
+    list.vector("boundary/" + boundary.displacements[k].group + "/force", "N",
+                [k](const Moment& now) { return now.report.holders.tools[k]; });
+  for (std::size_t k = 0; k < boundary.fixed.size(); ++k)
+    list.vector("fix/" + boundary.fixed[k].group + "/force", "N",
+                [k](const Moment& now) { return now.report.holders.supports[k]; });
+}
+
+void add_energy(List& list)
+{
+  using Account = step::EnergyAccount;
+  const auto add = [&](const char* name, double Account::*part) {
+    list.number(std::string("energy/") + name, "J",
+                [part](const Moment& now) { return now.state.energy.*part; });
+  };
+  add("elastic", &Account::elastic);
+  add("kinetic", &Account::kinetic);
+  add("supplied", &Account::supplied);
+  add("friction", &Account::friction);
+  add("cutting", &Account::cutting);
+  add("damping", &Account::damping);
+  list.number("energy/rest", "J", [](const Moment& now) { return now.state.energy.rest(); });
+}
+
+/// Least distance along the path between neighbouring coupling points; 0 with fewer than two.
+double smallest_gap(const step::State& state)
+{
+  double smallest = 0.0;
+  for (const auto& insertion : state.insertions)
+    for (std::size_t k = 1; k < insertion.points.size(); ++k) {
+      const double gap = insertion.path.sites[k].arc - insertion.path.sites[k - 1].arc;
+      smallest = smallest > 0.0 ? std::min(smallest, gap) : gap;
+    }
+  return smallest;
+}
+
+void add_constraints(List& list)
+{
+  const auto add = [&](const char* name, const char* unit, auto part) {
+    list.number(std::string("constraint/") + name, unit,
+                [part](const Moment& now) { return now.report.*part; });
+  };
+  using Report = step::StepReport;
+  add("rows", "1", &Report::rows);
+  add("rank", "1", &Report::rank);
+  add("iterations", "1", &Report::iterations);
+  add("residual", "m", &Report::residual);
+  add("condition", "1", &Report::condition);
+  add("outer", "1", &Report::outer);
+  add("contraction", "1", &Report::contraction);
+  list.number("constraint/smallest_gap", "m",
+              [](const Moment& now) { return smallest_gap(now.state); });
+}
+
+void add_compared(const std::string& name, std::size_t i, List& list)
+{
+  const auto add = [&](const char* what, const char* unit, auto part) {
+    list.number("constraint/compare/" + name + "/" + what, unit, [i, part](const Moment& now) {
+      const auto& trials = now.report.trials;
+      return trials.empty() ? law::Trial{}.*part : trials[i].*part;
+    });
+  };
+  add("iterations", "1", &law::Trial::iterations);
+  add("failures", "1", &law::Trial::failures);
+  add("residual", "m", &law::Trial::residual);
+  add("seconds", "s", &law::Trial::seconds);
+  add("factor_seconds", "s", &law::Trial::factor_seconds);
+}
+
+/// What the step took.
+void add_work(List& list)
+{
+  list.number("compliance/probes", "1",
+              [](const Moment& now) { return now.report.compliance.probes; });
+  list.number("compliance/new_probes", "1",
+              [](const Moment& now) { return now.report.compliance.built; });
+  list.number("compliance/reused_probes", "1",
+              [](const Moment& now) { return now.report.compliance.reused; });
+  list.number("compliance/build_seconds", "s", [](const Moment& now) { return now.build_seconds; });
+  list.number("compliance/passes", "1", [](const Moment& now) { return now.report.passes; });
+  list.number("compliance/factor_age", "1",
+              [](const Moment& now) { return now.model.tissue.factor().age().uses; });
+  list.number("compliance/leftover_gap", "m",
+              [](const Moment& now) { return now.report.leftover_gap; });
+  list.number("compliance/stale_error", "m",
+              [](const Moment& now) { return now.report.stale_error; });
+  list.number("time_linearisations", "1",
+              [](const Moment& now) { return now.report.linearisations; });
+  list.number("time_residual", "1", [](const Moment& now) { return now.report.unbalanced; });
+  list.number("step_seconds", "s", [](const Moment& now) { return now.seconds; });
+}
+
+}  // namespace
+
+std::vector<History> histories(const Scenario& scenario)
+{
+  List list;
+  list.number("time", "s", [](const Moment& now) { return now.state.t; });
+  for (std::size_t i = 0; i < scenario.needles.size(); ++i)
+    add_needle(scenario.needles[i].name, i, list);
+  for (std::size_t i = 0; i < scenario.cavities.cavities.size(); ++i)
+    add_cavity(scenario.cavities.cavities[i].name, i, list);
+  for (std::size_t e = 0; e < scenario.cavities.edges.size(); ++e)
+    add_edge(scenario.cavities.edges[e].name, e, list);
+  add_holders(scenario.tissue.boundary, list);
+  if (scenario.energy) add_energy(list);
+  add_constraints(list);
+  for (std::size_t i = 0; i < scenario.compare.size(); ++i)
+    add_compared(scenario.compare[i].name, i, list);
+  add_work(list);
+  return list.take();
+}
+
+}  // namespace trocar::driver

@@ -1,0 +1,107 @@
+#include "step/rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::step {
+
+Rows coupling_rows(const Model& model, const core::TimeStep& now, const State& state)
+{
+  Rows rows;
+  const bool coupled = std::any_of(state.insertions.begin(), state.insertions.end(),
+                                   [](const auto& one) { return one.touches(); });
+  if (!coupled) return rows;
+  const fem::GlobalField u = model.space.gather(state.tissue.u);
+  const insertion::Deformed tissue(model.scene.mesh, *model.locator, u);
+  const double passing = now.start ? 0.0 : now.h;
+  for (std::size_t i = 0; i < model.needles.size(); ++i)
+    rows.of_needle.push_back(model.insertion->add_rows(state.insertions[i], state.needles[i].shaft,
+                                                       tissue, static_cast<int>(i), passing,
+                                                       rows.set));
+  return rows;
+}
+
+fem::OwnedField Solution::needle_forces(const fem::Space& space) const
+{
+  if (system.empty()) return space.zero();
+  const solve::Probes& probes = system.probes();
+  core::VecX forces = system.probe_forces(lambda());
+  forces.tail(static_cast<Eigen::Index>(probes.wide.size())).setZero();
+  return solve::spread(probes, forces, space);
+}
+
+fem::OwnedField Solution::forces(const Model& model, const State& state, const cavity::Shape& walls,
+                                 const core::TimeStep& now) const
+{
+  fem::OwnedField forces = needle_forces(model.space);
+  if (model.cavities) forces.value += model.cavities->forces(state.cavities, walls, now).value;
+  return forces;
+}
+
+bool gaps_closed(const Model& model, const core::TimeStep& now, const State& state,
+                 const Solution& solution)
+{
+  constexpr double no_gap = 1e-12;  // [m], of places that are known to a part in 1e14
+  const double open = std::max(10.0 * model.scene.laws.tolerance, no_gap);
+  const Rows again = coupling_rows(model, now, state);
+  for (int i = 0; i < again.set.size(); ++i) {
+    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+    const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
+                      row.relative_softness == 0.0 && solution.mobility[i] > 0.0;
+    if (hard && std::abs(row.gap) > open) return false;
+  }
+  return true;
+}
+
+namespace {
+
+/// The increment that a needle's own rest at a shape asks for, with the factor it had [m, rad].
+core::VecX next_increment(const Model& model, const Scheme& scheme, const State& state,
+                          const Solution& solution, std::size_t i)
+{
+  const needle::Linearised& linear = solution.needles[i];
+  const Eigen::Index dofs = linear.free_increment.size();
+  core::VecX d = core::VecX::Zero(linear.held + dofs);
+  if (dofs == 0) return d;
+  const core::VecX r =
+      model.needles[i].residual(scheme.past().needles[i], state.needles[i], scheme.now()) -
+      solution.on_needle(i);
+  d.tail(dofs) = linear.factor.solve(core::VecX(r.tail(dofs)));
+  return d;
+}
+
+}  // namespace
+
+// The gaps of the rows in the new geometry, and what the beams' own rest makes of them. Along a
+// beam a change of place far below those is a huge force, but one that nothing else feels.
+double left_across(const Model& model, const Scheme& scheme, const State& state,
+                   const Solution& solution)
+{
+  constexpr double part = 1e-6;  // below which of a gap that is closed anyway nothing is asked
+  const Rows again = coupling_rows(model, scheme.now(), state);
+  std::vector<core::VecX> d;
+  for (std::size_t i = 0; i < model.needles.size(); ++i)
+    d.push_back(next_increment(model, scheme, state, solution, i));
+  const auto held = [](const constraint::Row& row) {
+    return row.body >= 0 && row.kind == law::RowKind::bilateral && row.relative_softness == 0.0;
+  };
+  std::vector<double> largest(model.needles.size(), 0.0);
+  for (int i = 0; i < again.set.size(); ++i) {
+    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+    double& most = largest[static_cast<std::size_t>(std::max(row.body, 0))];
+    if (held(row)) most = std::max(most, std::abs(solution.lambda()[i]));
+  }
+  double worst = 0.0;
+  for (int i = 0; i < again.set.size(); ++i) {
+    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+    if (!held(row) || !(solution.mobility[i] > 0.0)) continue;
+    const auto b = static_cast<std::size_t>(row.body);
+    double gap = row.gap + row.softness * solution.lambda()[i];
+    for (const auto& [dof, coefficient] : row.lever) gap -= coefficient * d[b][dof];
+    const double least = 10.0 * model.scene.laws.tolerance / part;
+    worst = std::max(worst, std::abs(gap) / (solution.mobility[i] * largest[b] + least));
+  }
+  return worst;
+}
+
+}  // namespace trocar::step

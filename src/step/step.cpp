@@ -1,0 +1,79 @@
+#include "step/step.hpp"
+
+#include "step/accept.hpp"
+#include "step/events.hpp"
+#include "step/newton.hpp"
+
+namespace trocar::step {
+
+// The step of both papers: every body moves freely, the rows that couple them are solved in one
+// small dense problem, and the bodies are corrected by it; again until all is balanced.
+Outcome<Accepted> advance(Model& model, const State& old, const core::TimeStep& step)
+{
+  const Scheme scheme(model, old, step);
+  auto next = predict(model, old, scheme);  // 1 events, decided before and frozen during the solve
+  if (!next) return next.refusal();
+  Newton newton(model, scheme, std::move(*next));
+  while (newton.goes_on()) {
+    if (const auto solved = newton.linearise(); !solved) return solved.refusal();  // 2 to 5
+    if (newton.balanced()) return accept(model, old, scheme, newton);
+    if (const auto led = newton.lead_on(); !led) return led.refusal();
+  }
+  return newton.not_balanced();
+}
+
+Outcome<Accepted> initial_state(Model& model)
+{
+  State state;
+  state.tissue = model.tissue.at_rest();
+  for (const needle::Needle& needle : model.needles) {
+    state.needles.push_back(needle.initial());
+    state.insertions.push_back(model.insertion->start(needle));
+  }
+  if (model.cavities) state.cavities = model.cavities->start();
+  const TimeSettings& time = model.scene.time;
+  const core::TimeStep start = core::TimeStep::at_start(time.step);
+  if (time.start_in_equilibrium || time.is_static) return equilibrium(model, state, start);
+  StepReport report;
+  for (std::size_t i = 0; i < model.needles.size(); ++i)
+    report.needles.push_back(
+        {state.needles[i].shaft.tip(), model.insertion->depth(state.insertions[i]), {}, {}});
+  if (model.cavities) {
+    model.cavities->take({}, {}, start, state.cavities);
+    report.cavities = model.cavities->accept(state.cavities, state.tissue.u,
+                                             model.cavities->shape(state.tissue.u), start);
+  }
+  const tissue::BoundaryConditions& boundary = model.scene.tissue.boundary;
+  report.holders.tools.assign(boundary.displacements.size(), Vec3::Zero());
+  report.holders.supports.assign(boundary.fixed.size(), Vec3::Zero());
+  return Accepted{std::move(state), std::move(report)};
+}
+
+Outcome<Accepted> equilibrium(Model& model, const State& old, const core::TimeStep& now)
+{
+  constexpr int most_load_steps = 64;
+  // Along a path in time the stepper halves the step; only the start is loaded in parts.
+  const int most_parts = now.start ? most_load_steps : 1;
+  for (int parts = 1;; parts *= 2) {
+    State from = old;
+    for (int part = 1; part <= parts; ++part) {
+      core::TimeStep share = now;
+      share.load = static_cast<double>(part) / parts;
+      Outcome<Accepted> result = advance(model, from, share);
+      if (!result && 2 * parts > most_parts) return result;
+      if (!result) break;
+      if (part == parts) return result;
+      from = std::move(result->state);
+    }
+  }
+}
+
+void prepare(Model& model)
+{
+  const bool is_static = model.scene.time.is_static || model.scene.time.start_in_equilibrium;
+  const State none;
+  const Scheme first(model, none, {0.0, model.scene.time.step, is_static});
+  model.tissue.prepare(first.now());
+}
+
+}  // namespace trocar::step

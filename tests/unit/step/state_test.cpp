@@ -1,0 +1,133 @@
+#include "support/states.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/scene.hpp"
+
+namespace trocar::step {
+namespace {
+
+/// A bending needle that punctures and cuts turning tissue, damped, by BDF2, with all accounts.
+Scene busy()
+{
+  Scene scene = test::needle_scenario(test::distorted);
+  scene.tissue.model = tissue::Model::corotational;
+  scene.needles[0].model = needle::Model::beam;
+  scene.needles[0].density = 7850.0;
+  scene.time.second_order = true;
+  scene.energy = true;
+  scene.insertion.friction = test::same({12.0, 8.0, 1.0});
+  scene.insertion.puncture.volume = {0.1};
+  scene.insertion.tip.cutting = {0.05};
+  scene.tissue.reuse = solve::Reuse::none;
+  return scene;
+}
+
+// Every member has a name of its own and no list is told without its size: what is put together
+// again from names and numbers says the same of itself.
+TEST(State, SaysAllOfItself)
+{
+  const test::Run run = test::run([] {
+    Scene scene = busy();
+    scene.time.end = 0.6;
+    return scene;
+  }());
+  const test::TakeApart parts = test::apart(run.states.back());
+  const test::TakeApart again = test::apart(test::together(parts));
+  ASSERT_EQ(again.members.size(), parts.members.size());
+  EXPECT_EQ(again.sizes, parts.sizes);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < parts.members.size(); ++i) {
+    EXPECT_EQ(again.members[i].name, parts.members[i].name);
+    EXPECT_EQ(again.members[i].value, parts.members[i].value) << parts.members[i].name;
+    names.insert(parts.members[i].name);
+  }
+  for (const char* name :
+       {"time", "tissue/displacement", "needle/0/shaft/frame/3", "insertion/0/point/1/lambda",
+        "insertion/0/tip/hold/weight", "before/tissue/velocity", "energy/supplied"})
+    EXPECT_TRUE(names.count(name)) << name;
+}
+
+// A run that goes on from such numbers alone, with bodies that know nothing of the steps before, is
+// the same to the last bit: all that a step depends on is in the state.
+TEST(State, IsAllThatAStepDependsOn)
+{
+  const Scene scene = busy();
+  Model through(scene, base::Comm(MPI_COMM_WORLD));
+  State a = initial_state(through)->state;
+  const auto step = [&](Model& model, const State& from, int n) {
+    auto next = advance(model, from, {0.02 * n, 0.02, false});
+    EXPECT_TRUE(next) << next.why();
+    return std::move(next->state);
+  };
+  for (int n = 1; n <= 20; ++n) a = step(through, a, n);
+  State b = test::together(test::apart(a));
+  Model fresh(scene, base::Comm(MPI_COMM_WORLD));
+  for (int n = 21; n <= 30; ++n) {
+    a = step(through, a, n);
+    b = step(fresh, b, n);
+    const test::TakeApart one = test::apart(a), other = test::apart(b);
+    ASSERT_EQ(one.members.size(), other.members.size());
+    for (std::size_t i = 0; i < one.members.size(); ++i)
+      ASSERT_EQ(one.members[i].value, other.members[i].value)
+          << one.members[i].name << " in step " << n;
+  }
+  EXPECT_GT(a.insertions[0].points.size(), 2U);
+}
+
+// With a factor that lags as well: it is made again from what the state says of it, and goes on
+// wearing out from where it was. Columns that are computed in other portions are rounded otherwise.
+TEST(State, SaysWhatALaggingFactorWasMadeFrom)
+{
+  Scene scene = busy();
+  scene.tissue.reuse = solve::Reuse::exact;
+  scene.tissue.lag_tolerance = 1e-13;
+  scene.time.newton_max = 1;
+  Model through(scene, base::Comm(MPI_COMM_WORLD)), fresh(scene, base::Comm(MPI_COMM_WORLD));
+  State a = initial_state(through)->state;
+  for (int n = 1; n <= 20; ++n) a = advance(through, a, {0.02 * n, 0.02, false})->state;
+  ASSERT_TRUE(a.tissue.factor);
+  EXPECT_GT(a.tissue.age.uses, 1);
+  State b = test::together(test::apart(a));
+  int older = 0;
+  for (int n = 21; n <= 40; ++n) {
+    const core::TimeStep now{0.02 * n, 0.02, false};
+    const auto one = advance(through, a, now), other = advance(fresh, b, now);
+    ASSERT_TRUE(one && other) << one.why() << other.why();
+    a = one->state;
+    b = other->state;
+    EXPECT_EQ(one->report.passes, other->report.passes) << n;
+    EXPECT_EQ(a.tissue.age.uses, b.tissue.age.uses) << n;
+    older += a.tissue.age.lags ? 1 : 0;
+    EXPECT_LT((a.tissue.u.value - b.tissue.u.value).norm(), 1e-10 * a.tissue.u.value.norm());
+  }
+  EXPECT_GT(older, 5);
+}
+
+// A step that was tried in between, and caches that are dropped, change nothing but what columns
+// are rounded to.
+TEST(State, IsNotChangedByWhatWasTriedOrDropped)
+{
+  Scene scene = busy();
+  scene.tissue.reuse = solve::Reuse::exact;
+  scene.tissue.lag_tolerance = 1e-13;
+  scene.time.newton_max = 1;
+  Model plain(scene, base::Comm(MPI_COMM_WORLD)), tried(scene, base::Comm(MPI_COMM_WORLD));
+  State a = initial_state(plain)->state, b = initial_state(tried)->state;
+  for (int n = 1; n <= 20; ++n) {
+    const core::TimeStep now{0.02 * n, 0.02, false};
+    if (n % 3 == 0) (void)advance(tried, b, {0.02 * n + 0.05, 0.07, false});
+    if (n % 4 == 0) tried.drop_caches();
+    const auto one = advance(plain, a, now), other = advance(tried, b, now);
+    ASSERT_TRUE(one && other) << one.why() << other.why();
+    a = one->state;
+    b = other->state;
+    EXPECT_EQ(a.tissue.age.uses, b.tissue.age.uses) << n;
+    EXPECT_LT((a.tissue.u.value - b.tissue.u.value).norm(), 1e-10 * a.tissue.u.value.norm());
+  }
+}
+
+}  // namespace
+}  // namespace trocar::step
