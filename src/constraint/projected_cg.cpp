@@ -75,9 +75,9 @@ ProjectedCg::ProjectedCg(Laws& laws, solve::Linearisation& at, const VecX& start
       rest_(at.residual),
       load_(at.space().norm(at.residual))
 {
-  if (at.guess.value.size() > 0) {
-    rest_.value -= at.product(at.guess).value;
-    u_.value += at.guess.value;
+  if (at.guess) {
+    rest_.value -= at.product(*at.guess).value;
+    u_.value += at.guess->value;
   }
   if (rows()) rest_.value += pushed_by(lambda_).value;
   clear_fixed(rest_);
@@ -93,11 +93,12 @@ Outcome<Saddle> ProjectedCg::run()
       continue;
     }
     ++laws_.report().passes;
-    const Product product{exact_ ? OwnedField{} : at_.product(trial->d),
-                          rows() ? pushed_by(trial->more) : space().zero()};
+    Product product;
+    if (!exact_)
+      product = {at_.product(trial->d), rows() ? pushed_by(trial->more) : space().zero()};
     if (exact_ || reached(product))
       return Saddle{{u_.value + trial->d.value}, laws_.take(), laws_.problem()};
-    if (const auto on = go_on(std::move(*trial), product); !on) return on.refusal();
+    if (const auto on = go_on(std::move(*trial), std::move(product)); !on) return on.refusal();
   }
 }
 

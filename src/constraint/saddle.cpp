@@ -47,7 +47,7 @@ Outcome<Saddle> paper(Laws& laws, solve::Linearisation& at, const core::VecX& st
   pushed.base = free->u;
   pushed.residual = system.forces(laws.multipliers(), at.space());
   at.factor->fixed().clear(pushed.residual);
-  pushed.guess = {};
+  pushed.guess.reset();
   pushed.half.reset();
   pushed.least = 0.0;
   auto end = alone(pushed);

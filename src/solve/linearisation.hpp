@@ -12,12 +12,12 @@ namespace trocar::solve {
 /// that follow the tissue.
 struct Linearisation
 {
-  OwnedField iterate;   ///< the place; gaps of rows are measured from there [m]
-  OwnedField base;      ///< the same with prescribed displacements [m]
-  OwnedField residual;  ///< r, zero on fixed dofs [N]
-  OwnedField guess{};   ///< a first Δu for iterations: where the velocity leads [m]; empty: 0
-  double least = 0.0;   ///< norm of a rest that need not be balanced any further [N]
-  bool loads_follow = false;  ///< A is not positive definite for certain
+  OwnedField iterate;                 ///< the place; gaps of rows are measured from there [m]
+  OwnedField base;                    ///< the same with prescribed displacements [m]
+  OwnedField residual;                ///< r, zero on fixed dofs [N]
+  std::optional<OwnedField> guess{};  ///< a first Δu for iterations: where the velocity leads [m]
+  double least = 0.0;                 ///< norm of a rest that need not be balanced any further [N]
+  bool loads_follow = false;          ///< A is not positive definite for certain
   /// A d [N]. Collective.
   std::function<OwnedField(const OwnedField&)> product{};
   LaggedFactor* factor = nullptr;

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "law/immovable.hpp"
 #include "step/newton.hpp"
@@ -10,9 +13,10 @@ namespace trocar::step {
 
 core::Outcome<core::Done> Newton::linearise()
 {
-  const fem::OwnedField iterate = next_.tissue.u;
-  before_.u = iterate;
   tissue::Tissue& tissue = model_->tissue;
+  before_.u = next_.tissue.u;
+  std::optional<std::pair<State, cavity::Shape>> from;  // to begin again with the other tangent
+  if (tissue.exact_tangent()) from.emplace(next_, walls_);
   for (;;) {
     auto solution = solve::attempted([&] { return solve_once(); });
     if (solution) {
@@ -23,7 +27,7 @@ core::Outcome<core::Done> Newton::linearise()
     const core::Refusal& refusal = solution.refusal();
     const bool exact = tissue.exact_tangent();
     if (tissue.drop_exact()) {
-      next_.tissue.u = iterate;
+      std::tie(next_, walls_) = *from;
       continue;
     }
     if (refusal.unsolved && !exact) throw core::Unsolved(refusal.why);

@@ -11,7 +11,6 @@ struct Rows
 {
   constraint::Set set;
   std::vector<insertion::CouplingRows> of_needle;  ///< empty where no needle touches tissue
-  cavity::CavityRows of_cavities;
 };
 
 /// Rows of the needles where the state has them. Collective.

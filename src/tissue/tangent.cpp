@@ -22,40 +22,62 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
   return upright;
 }
 
-/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Otherwise
-/// the operator fails for good.
+/// The factor of an operator may serve later ones.
+bool Tissue::may_lag() const
+{
+  return settings_.model != Model::linear && settings_.lag_tolerance > 0.0 &&
+         current_->factor.solver().can_turn();
+}
+
 core::Outcome<core::Done> Tissue::make_factor(const Configuration& at)
 {
   const auto made = current_->factor.make(values_);
   current_->made.reset();
-  if (made) {
-    if (settings_.model != Model::linear)
-      current_->made = std::make_shared<const FactorOrigin>(FactorOrigin{*current_->rate, at});
-    return made;
-  }
-  if (!settings_.exact_tangent()) throw core::solver_error(made.why());
-  current_->rate.reset();
-  return core::Refusal{"the exact tangent has no factor (an instability, or too large a step): " +
-                       made.why()};
+  if (!made)
+    current_->rate.reset();
+  else if (may_lag())
+    current_->made = std::make_shared<const FactorOrigin>(
+        FactorOrigin{*current_->rate, at, settings_.exact_tangent()});
+  return made;
+}
+
+/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Otherwise
+/// the operator fails for good.
+core::Refusal Tissue::without_factor(const core::Refusal& refusal) const
+{
+  if (!settings_.exact_tangent()) throw core::solver_error(refusal.why);
+  return {"the exact tangent has no factor (an instability, or too large a step): " + refusal.why};
 }
 
 /// Where the state goes on with a factor that is not the one at hand, that is made again: a step
-/// depends on its state, not on what was tried or dropped in between. With other rates a new one is
-/// due anyway.
+/// depends on its state, not on what was tried or dropped in between. With other rates, or one that
+/// is worn, a new one is due anyway.
 core::Outcome<core::Done> Tissue::go_on_with_factor(const TissueState& old, const TimeStep& step)
 {
-  const bool lags = settings_.model != Model::linear && settings_.lag_tolerance > 0.0;
-  if (!lags || !old.factor || !(old.factor->rates == step.rates())) return core::Done{};
+  if (!old.factor || !(old.factor->rates == step.rates())) return core::Done{};
   current_ = &operator_for(old.factor->rates);
-  if (!space_->comm().all(current_->made == old.factor)) {
-    current_->rate = old.factor->rates;
-    current_->at = old.factor->at;
-    assemble(current_->at, *current_->rate);
-    if (const auto made = make_factor(current_->at); !made) return made;
-    current_->made = old.factor;
-  }
+  if (!may_lag()) return core::Done{};
   current_->factor.set_age(old.age);
-  return core::Done{};
+  if (space_->comm().all(current_->made == old.factor)) return core::Done{};
+  if (factor_worn()) {
+    current_->rate.reset();
+    return core::Done{};
+  }
+  const Tangent now = settings_.tangent;
+  const auto with = [&](Tangent tangent) {
+    settings_.tangent = tangent;
+    elements_->take(tangent);
+  };
+  if (automatic_) with(old.factor->exact ? Tangent::exact : Tangent::rotated);
+  current_->rate = old.factor->rates;
+  current_->at = old.factor->at;
+  assemble(current_->at, *current_->rate);
+  const auto made = make_factor(current_->at);
+  if (automatic_) with(now);
+  if (!made) return made;
+  current_->made = old.factor;
+  current_->factor.set_age(old.age);
+  return made;
 }
 
 void Tissue::remember_factor(TissueState& state) const

@@ -84,9 +84,8 @@ core::Outcome<core::Done> Tissue::use_operator(const Configuration& at, const Ti
   current_->rate = rate;
   if (!linear) current_->at = at;
   assemble(at, rate);
-  const bool may_lag = !linear && settings_.lag_tolerance > 0.0 && factor.age().uses > 0 &&
-                       factor.solver().can_turn();
-  if (!may_lag || !space_->comm().all(same_rates) || factor_worn()) return make_factor(at);
+  const bool serves = may_lag() && factor.age().uses > 0;
+  if (!serves || !space_->comm().all(same_rates) || factor_worn()) return make_factor(at);
   factor.keep(turned_nodes(at.R, current_->made->at.R));
   return core::Done{};
 }
@@ -189,8 +188,9 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
   if (!linearise_at(iterate, goes_on))
     return core::Refusal{"an element of the tissue turned inside out"};
   if (!goes_on)
-    if (const auto made = go_on_with_factor(old, step); !made) return made.refusal();
-  if (const auto made = use_operator(at_, step); !made) return made.refusal();
+    if (const auto made = go_on_with_factor(old, step); !made)
+      return without_factor(made.refusal());
+  if (const auto made = use_operator(at_, step); !made) return without_factor(made.refusal());
   solve::Linearisation at;
   at.factor = &current_->factor;
   at.loads_follow = static_cast<bool>(more.stiffness);
@@ -216,12 +216,16 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
     if (stiffness) product.value -= stiffness(d).value;
     return product;
   };
-  at.refactor = [this] { return make_factor(current_->at); };
+  at.refactor = [this]() -> core::Outcome<core::Done> {
+    const auto made = make_factor(current_->at);
+    if (!made) return without_factor(made.refusal());
+    return made;
+  };
   if (!at.lagged()) return at;
   at.least = least_rest(known ? configured_.sizes : sizes, at.loads_follow ? 1e-10 : 1e-12);
   if (!step.start && !goes_on) {
-    at.guess = {step.h * old.v.value};
-    fixed_.clear(at.guess);
+    at.guess = OwnedField{step.h * old.v.value};
+    fixed_.clear(*at.guess);
   }
   return at;
 }

@@ -38,7 +38,8 @@ struct TissueSettings : ElementSettings
 struct FactorOrigin
 {
   core::Rates rates;
-  Configuration at;  ///< where
+  Configuration at;    ///< where
+  bool exact = false;  ///< with the exact tangent
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>
@@ -49,6 +50,7 @@ struct FactorOrigin
     v("rotation", "1", self.at.R);
     v("gradient", "1", self.at.G);
     v("pressure", "Pa", self.at.p);
+    v("exact", "1", self.exact);
   }
 };
 
@@ -190,6 +192,8 @@ class Tissue
   core::Outcome<core::Done> use_operator(const Configuration& at, const TimeStep& step);
   core::Outcome<core::Done> make_factor(const Configuration& at);
   core::Outcome<core::Done> go_on_with_factor(const TissueState& old, const TimeStep& step);
+  core::Refusal without_factor(const core::Refusal& refusal) const;
+  bool may_lag() const;
   Operator& operator_for(const core::Rates& rate);
   bool factor_worn() const;
   std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,

@@ -184,8 +184,9 @@ TEST(Reuse, CanBeTurnedOff)
     const tissue::TissueState rest = body.tissue.at_rest();
     solve::ComplianceReport report;
     for (int n = 1; n <= 3; ++n) {
-      body.tissue.linearise(rest, rest.u, {0.01 * n, 0.01, false});
-      body.tissue.factor().compliance().block({{62, 63}, {}}, report);
+      auto at = body.tissue.linearise(rest, rest.u, {0.01 * n, 0.01, false});
+      at->forward();  // with which a step begins
+      at->factor->compliance().block({{62, 63}, {}}, report);
       EXPECT_EQ(report.built, 6);
       EXPECT_EQ(report.reused, 0);
     }
