@@ -148,7 +148,7 @@ void Cavities::set_gaps(const CavityRows& rows, constraint::Set& set) const
 int Cavities::drained(const Fluid& fluid)
 {
   for (Eigen::Index i = 0; i < fluid.volume.size(); ++i)
-    if (fluid.compliance(i, i) < 0.0) return static_cast<int>(i);
+    if (fluid.volume[i] < 0.0 && fluid.compliance(i, i) < 0.0) return static_cast<int>(i);
   return -1;
 }
 

@@ -60,7 +60,6 @@ class Laws
   LawReport& report() { return *report_; }
   const core::MatX& compliance() const { return C_; }  ///< C of the probes [m/N]
   const law::Problem& problem() const { return problem_; }
-  const law::Multipliers& answer() const { return answer_; }
   const core::VecX& multipliers() const { return answer_.lambda; }  ///< [N]; empty: not met yet
   law::Multipliers take() { return std::exchange(answer_, {}); }
   /// Every row holds or slips as in the call before.

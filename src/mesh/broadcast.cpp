@@ -6,10 +6,11 @@
 namespace trocar::mesh {
 namespace {
 
-std::vector<std::string> names_of(const std::vector<SurfaceGroup>& groups)
+template <class Group>
+std::vector<std::string> names_of(const std::vector<Group>& groups)
 {
   std::vector<std::string> names;
-  for (const SurfaceGroup& group : groups) names.push_back(group.name);
+  for (const Group& group : groups) names.push_back(group.name);
   return names;
 }
 
@@ -60,8 +61,7 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
     broadcast_rows(mesh.surfaces[i].faces, comm);
     comm.broadcast(mesh.surfaces[i].strays);
   }
-  names.clear();
-  for (const PointGroup& group : mesh.points) names.push_back(group.name);
+  names = names_of(mesh.points);
   comm.broadcast(names);
   mesh.points.resize(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {

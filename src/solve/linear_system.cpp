@@ -141,7 +141,8 @@ void LinearSystem::raise_mumps_workspace(PC pc)
   TROCAR_PETSC(MatMumpsSetIcntl(factor, 14, 60));
 }
 
-void LinearSystem::set_operator(const fem::BlockMatrix& values)
+/// Puts values into the matrix; gives the one that is solved with.
+Mat LinearSystem::fill(const fem::BlockMatrix& values)
 {
   const fem::BlockPattern& pattern = values.pattern();
   Mat A = assembled_.get();
@@ -156,10 +157,14 @@ void LinearSystem::set_operator(const fem::BlockMatrix& values)
   }
   TROCAR_PETSC(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
   TROCAR_PETSC(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-  if (needs_aij_) {
-    convert();
-    A = converted_.get();
-  }
+  if (!needs_aij_) return A;
+  convert();
+  return converted_.get();
+}
+
+void LinearSystem::set_operator(const fem::BlockMatrix& values)
+{
+  Mat A = fill(values);
   attach_near_null_space(A);
   TROCAR_PETSC(KSPSetOperators(ksp_.get(), A, A));
   PC pc = nullptr;

@@ -53,6 +53,7 @@ class LinearSystem
   void create_solver();
   void attach_near_null_space(Mat matrix);
   void raise_mumps_workspace(PC pc);
+  Mat fill(const fem::BlockMatrix& values);
   void convert();
   void set_up();
   void check_converged(const char* what) const;

@@ -94,7 +94,7 @@ Outcome<Accepted> accept(const Model& model, const State& old, const Scheme& sch
   accept_needles(model, newton);
   model.tissue.remember_factor(next.tissue);
   if (model.scene.time.second_order && !now.start)
-    next.before = Before{scheme.old_velocity(), old.tissue, old.needles};
+    next.before = Before{scheme.old_velocity(), {old.tissue.u, old.tissue.v}, old.needles};
   if (model.scene.energy) next.energy = account(model, old, scheme, newton);
   if (auto refusal = collapsed(model.scene, report)) return std::move(*refusal);
   return Accepted{std::move(next), std::move(report)};

@@ -14,7 +14,7 @@ namespace trocar::step {
 core::Outcome<core::Done> Newton::linearise()
 {
   tissue::Tissue& tissue = model_->tissue;
-  before_.u = next_.tissue.u;
+  u_before_ = next_.tissue.u;
   std::optional<std::pair<State, cavity::Shape>> from;  // to begin again with the other tangent
   if (tissue.exact_tangent()) from.emplace(next_, walls_);
   for (;;) {
@@ -63,16 +63,17 @@ core::Outcome<Solution> Newton::solve_once()
     auto solution = solve_rows(*at);
     if (!solution) return solution.refusal();
     walls_ = model_->walls(next_.tissue.u);
-    if (solution->system.empty() || turn == most || gaps_closed(*model_, now, next_, *solution))
+    if (solution->system.empty() || turn == most ||
+        gaps_closed(*model_, *solution, coupling_rows(*model_, now, next_)))
       return solution;
     solution_ = std::move(*solution);
   }
 }
 
-core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
+/// 3: the rows where the state so far has them, and the bodies they hold.
+void Newton::collect_rows(Solution& solution)
 {
   const core::TimeStep& now = scheme_->now();
-  Solution solution;
   std::vector<constraint::SmallBody> bodies;
   for (std::size_t i = 0; i < model_->needles.size(); ++i) {
     solution.needles.push_back(
@@ -80,39 +81,49 @@ core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
     const needle::Linearised& needle = solution.needles.back();
     bodies.push_back({needle.held, needle.factor, needle.free_increment});
   }
-  Rows rows = coupling_rows(*model_, now, next_);  // 3 rows H, gaps, laws
+  Rows rows = coupling_rows(*model_, now, next_);
   solution.of_needle = std::move(rows.of_needle);
   if (model_->cavities)
     solution.of_cavities =
         model_->cavities->add_rows(next_.cavities, walls_, next_.tissue.u, now, rows.set);
   solution.system = constraint::System(std::move(rows.set), std::move(bodies));
+}
+
+core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
+{
+  Solution solution;
+  collect_rows(solution);
   if (model_->cavities)
     solution.system.relinearise = [&](const core::VecX& lambda, constraint::Set& set) {
       return model_->cavities->refresh(lambda, solution.of_cavities, set);
     };
   solution.system.place = [&](int row) { return place_of(model_->scene, solution, row); };
-  const bool known = solution_ && solution_->lambda().size() == solution.system.size();
-  const core::VecX start = known ? solution_->lambda() : solution.system.starts();
-
-  const constraint::LawSettings settings{model_->scene.laws, model_->scene.compare,
-                                         &model_->ledger};
-  constraint::Laws laws(solution.system, settings, report_);  // 4 the dense problem
-  const bool frozen = model_->cavities && !model_->cavities->frozen(next_.cavities).empty();
-  auto saddle = frozen ? model_->pressure_search->solve(laws, at, start, now, next_.cavities)
-                       : constraint::solve_saddle(
-                             laws, at, start,
-                             {model_->scene.tissue.reuse == solve::Reuse::stale,
-                              model_->scene.stale_error, lag_tolerance(!solution.system.empty())});
-  if (!saddle) return saddle.refusal();
-  if (frozen)
-    report_.pressure_updates =
-        std::max(report_.pressure_updates, model_->pressure_search->updates());
-  solution.system.relinearise = nullptr;
+  auto saddle = meet_laws(at, solution.system);  // 4
+  solution.system.relinearise = nullptr;         // they look at this very solution
   solution.system.place = nullptr;
+  if (!saddle) return saddle.refusal();
   solution.saddle = std::move(*saddle);
   if (!solution.system.empty()) solution.mobility = law::mobility(solution.saddle.problem);
   correct(solution);
   return solution;
+}
+
+/// 4: the dense problem, and where it leads the tissue.
+core::Outcome<constraint::Saddle> Newton::meet_laws(solve::Linearisation& at,
+                                                    constraint::System& system)
+{
+  const bool known = solution_ && solution_->lambda().size() == system.size();
+  const core::VecX start = known ? solution_->lambda() : system.starts();
+  const constraint::LawSettings settings{model_->scene.laws, model_->scene.compare,
+                                         &model_->ledger};
+  constraint::Laws laws(system, settings, report_);
+  if (!model_->cavities || model_->cavities->frozen(next_.cavities).empty())
+    return constraint::solve_saddle(laws, at, start,
+                                    {model_->scene.tissue.reuse == solve::Reuse::stale,
+                                     model_->scene.stale_error, lag_tolerance(!system.empty())});
+  auto saddle = model_->pressure_search->solve(laws, at, start, scheme_->now(), next_.cavities);
+  report_.pressure_updates = std::max(report_.pressure_updates, model_->pressure_search->updates());
+  return saddle;
 }
 
 /// 5: every body goes where the multipliers lead it.

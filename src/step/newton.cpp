@@ -50,19 +50,30 @@ double Newton::largest_increment() const
   return largest;
 }
 
-bool Newton::balanced()
+void Newton::measure()
 {
   const core::TimeStep& now = scheme_->now();
-  here_ = {};
-  if (effort_.measured) {
-    here_.forces = solution_->forces(*model_, next_, walls_, now);
-    if (inverted_ < 0)
-      here_.balance =
-          model_->tissue.balance(scheme_->past().tissue, next_.tissue.u, now, here_.forces);
-  }
+  forces_ = {};
+  balance_ = {};
+  if (!effort_.measured) return;
+  forces_ = solution_->forces(*model_, next_, walls_, now);
+  if (inverted_ < 0)
+    balance_ = model_->tissue.balance(scheme_->past().tissue, next_.tissue.u, now, forces_);
+}
+
+bool Newton::balanced()
+{
+  measure();
   if (inverted_ >= 0) return false;
-  const tissue::Balance& balance = here_.balance;
-  const double across = model_->beams() ? left_across(*model_, *scheme_, next_, *solution_) : 0.0;
+  const core::TimeStep& now = scheme_->now();
+  const tissue::Balance& balance = balance_;
+  std::optional<Rows> rows;  // here, made when they are asked for
+  const auto rows_here = [&]() -> const Rows& {
+    if (!rows) rows = coupling_rows(*model_, now, next_);
+    return *rows;
+  };
+  const double across =
+      model_->beams() ? left_across(*model_, *scheme_, next_, *solution_, rows_here()) : 0.0;
   report_.unbalanced = std::max(balance.worst, across);
   const bool automatic = effort_.first > 0.0;
   if (report_.linearisations == 1 && automatic && report_.unbalanced <= effort_.first) return true;
@@ -75,7 +86,7 @@ bool Newton::balanced()
     return false;
   if (model_->exact_volumes() && !model_->cavities->closed(next_.cavities, walls_, now))
     return false;
-  return gaps_closed(*model_, now, next_, *solution_);
+  return gaps_closed(*model_, *solution_, rows_here());
 }
 
 core::Outcome<core::Done> Newton::lead_on()
@@ -83,16 +94,16 @@ core::Outcome<core::Done> Newton::lead_on()
   constexpr double slow = 0.5;
   constexpr int most_slow = 3;
   const bool admissible = inverted_ < 0;
-  double rest = admissible ? here_.balance.norm : unbalanced_before_;
+  double rest = admissible ? balance_.norm : unbalanced_before_;
   if (!admissible || rest > slow * unbalanced_before_) ++slow_;
   if (slow_ >= most_slow) model_->tissue.take_exact();
   const bool overshoots = rest > std::max(unbalanced_before_, effort_.later);
   const bool may_shorten = effort_.most > 1 && effort_.measured;
   if ((!admissible || overshoots) && !(may_shorten && shorten(rest)))
     return core::Refusal{inverted_at(model_->scene, inverted_)};
-  before_.forces = std::move(here_.forces);
+  forces_before_ = std::move(forces_);
   unbalanced_before_ = rest;
-  lost_before_ = here_.balance.lost;
+  lost_before_ = balance_.lost;
   return core::Done{};
 }
 
@@ -107,23 +118,23 @@ bool Newton::shorten(double& rest)
   const bool admissible = inverted_ < 0;
   inversions_ = admissible ? 0 : inversions_ + 1;
   if (inversions_ > most_inversions) return false;
-  const fem::OwnedField whole = next_.tissue.u, all = here_.forces;
+  const fem::OwnedField whole = next_.tissue.u, all = forces_;
   bool possible = admissible;
   double part = 1.0;
   for (int halving = 0; halving < most_halvings; ++halving) {
     part *= 0.5;
-    const fem::OwnedField u{before_.u.value + part * (whole.value - before_.u.value)};
+    const fem::OwnedField u{u_before_.value + part * (whole.value - u_before_.value)};
     if (model_->tissue.folded(u) >= 0) continue;
     const bool first = !std::isfinite(unbalanced_before_);  // nothing to compare with
     fem::OwnedField along = all;
-    if (!first) along.value = before_.forces.value + part * (all.value - before_.forces.value);
+    if (!first) along.value = forces_before_.value + part * (all.value - forces_before_.value);
     const double here =
         model_->tissue.balance(scheme_->past().tissue, u, scheme_->now(), along).norm;
     const bool descends = first || here < unbalanced_before_;
     if (admissible && !descends) continue;
     possible = true;
     next_.tissue.u = u;
-    here_.forces = std::move(along);
+    forces_ = std::move(along);
     rest = here;
     if (descends) break;
   }

@@ -35,7 +35,7 @@ class Newton
   const Solution& solution() const { return *solution_; }
   StepReport& report() { return report_; }
   /// Of the tissue at the state so far.
-  const tissue::Balance& balance() const { return here_.balance; }
+  const tissue::Balance& balance() const { return balance_; }
 
  private:
   /// How often a step is linearised, and until when.
@@ -46,18 +46,14 @@ class Newton
     double later;   ///< and which ends the others
     bool measured;  ///< whether the balance of the tissue is looked at
   };
-  /// A place of the tissue on the way.
-  struct Place
-  {
-    fem::OwnedField u{}, forces{};  ///< and forces of needles and cavities there [N]
-    tissue::Balance balance{};
-  };
-
   static Effort effort_of(const Model& model, const core::TimeStep& now);
   double lag_tolerance(bool rows) const;
   core::Outcome<Solution> solve_once();
+  void collect_rows(Solution& solution);
   core::Outcome<Solution> solve_rows(solve::Linearisation& at);
+  core::Outcome<constraint::Saddle> meet_laws(solve::Linearisation& at, constraint::System& system);
   void correct(Solution& solution);
+  void measure();
   double largest_increment() const;
   bool shorten(double& rest);
 
@@ -70,9 +66,11 @@ class Newton
   std::optional<Solution> solution_;  ///< of the last linearisation: the multipliers of the step
   double residual_ = std::numeric_limits<double>::infinity();  ///< what the next one is led by
   int inverted_ = -1;  ///< file tet that is turned inside out, -1: none; agreed by all ranks
-  Place here_;         ///< where the last linearisation led, as far as it was measured
+  // Where the last linearisation led, as far as it was measured:
+  fem::OwnedField forces_;   ///< of needles and cavities on the tissue [N]
+  tissue::Balance balance_;  ///< of the tissue
   // Where it started from:
-  Place before_;
+  fem::OwnedField u_before_, forces_before_;
   double unbalanced_before_ = std::numeric_limits<double>::infinity();
   double lost_before_ = std::numeric_limits<double>::infinity();  ///< Balance::lost [N]
   int inversions_ = 0;  ///< increments in a row that turned elements inside out

@@ -38,17 +38,24 @@ fem::OwnedField Solution::forces(const Model& model, const State& state, const c
   return forces;
 }
 
-bool gaps_closed(const Model& model, const core::TimeStep& now, const State& state,
-                 const Solution& solution)
+namespace {
+
+/// Gap of a row that counts as closed [m]: places are known to a part in 1e14.
+double closed_gap(const Model& model)
 {
-  constexpr double no_gap = 1e-12;  // [m], of places that are known to a part in 1e14
-  const double open = std::max(10.0 * model.scene.laws.tolerance, no_gap);
-  const Rows again = coupling_rows(model, now, state);
-  for (int i = 0; i < again.set.size(); ++i) {
-    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
+  constexpr double no_gap = 1e-12;
+  return std::max(10.0 * model.scene.laws.tolerance, no_gap);
+}
+
+}  // namespace
+
+bool gaps_closed(const Model& model, const Solution& solution, const Rows& here)
+{
+  for (int i = 0; i < here.set.size(); ++i) {
+    const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(i)];
     const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
                       row.relative_softness == 0.0 && solution.mobility[i] > 0.0;
-    if (hard && std::abs(row.gap) > open) return false;
+    if (hard && std::abs(row.gap) > closed_gap(model)) return false;
   }
   return true;
 }
@@ -75,32 +82,28 @@ core::VecX next_increment(const Model& model, const Scheme& scheme, const State&
 // The gaps of the rows in the new geometry, and what the beams' own rest makes of them. Along a
 // beam a change of place far below those is a huge force, but one that nothing else feels.
 double left_across(const Model& model, const Scheme& scheme, const State& state,
-                   const Solution& solution)
+                   const Solution& solution, const Rows& here)
 {
-  constexpr double part = 1e-6;  // below which of a gap that is closed anyway nothing is asked
-  const Rows again = coupling_rows(model, scheme.now(), state);
   std::vector<core::VecX> d;
   for (std::size_t i = 0; i < model.needles.size(); ++i)
     d.push_back(next_increment(model, scheme, state, solution, i));
-  const auto held = [](const constraint::Row& row) {
-    return row.body >= 0 && row.kind == law::RowKind::bilateral && row.relative_softness == 0.0;
-  };
-  std::vector<double> largest(model.needles.size(), 0.0);
-  for (int i = 0; i < again.set.size(); ++i) {
-    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
-    double& most = largest[static_cast<std::size_t>(std::max(row.body, 0))];
-    if (held(row)) most = std::max(most, std::abs(solution.lambda()[i]));
+  const core::VecX& lambda = solution.lambda();
+  std::vector<double> largest(model.needles.size(), 0.0), change = largest;  // [N]
+  for (int i = 0; i < here.set.size(); ++i) {
+    const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(i)];
+    const bool across = row.body >= 0 && row.kind == law::RowKind::bilateral &&
+                        row.relative_softness == 0.0 && solution.mobility[i] > 0.0;
+    if (!across) continue;
+    const auto b = static_cast<std::size_t>(row.body);
+    double gap = row.gap + row.softness * lambda[i];
+    for (const auto& [dof, coefficient] : row.lever) gap -= coefficient * d[b][dof];
+    const double open = std::max(std::abs(gap) - closed_gap(model), 0.0);
+    largest[b] = std::max(largest[b], std::abs(lambda[i]));
+    change[b] = std::max(change[b], open / solution.mobility[i]);
   }
   double worst = 0.0;
-  for (int i = 0; i < again.set.size(); ++i) {
-    const constraint::Row& row = again.set.rows()[static_cast<std::size_t>(i)];
-    if (!held(row) || !(solution.mobility[i] > 0.0)) continue;
-    const auto b = static_cast<std::size_t>(row.body);
-    double gap = row.gap + row.softness * solution.lambda()[i];
-    for (const auto& [dof, coefficient] : row.lever) gap -= coefficient * d[b][dof];
-    const double least = 10.0 * model.scene.laws.tolerance / part;
-    worst = std::max(worst, std::abs(gap) / (solution.mobility[i] * largest[b] + least));
-  }
+  for (std::size_t b = 0; b < change.size(); ++b)
+    if (change[b] > 0.0) worst = std::max(worst, change[b] / (largest[b] + change[b]));
   return worst;
 }
 

@@ -39,14 +39,13 @@ struct Solution
   }
 };
 
-/// The gaps of the rows that hold needles across, in the geometry of `state`, are closed: the rows
-/// turn with the shaft. Collective.
-bool gaps_closed(const Model& model, const core::TimeStep& now, const State& state,
-                 const Solution& solution);
+/// The gaps of the rows that hold needles across, `here` in the geometry that the solution led to,
+/// are closed: rows turn with the shaft. Not collective.
+bool gaps_closed(const Model& model, const Solution& solution, const Rows& here);
 
 /// What another linearisation would change of the forces that beams are held with, as a part of the
-/// largest of each. Collective.
+/// largest of each, 0 to 1. `here`: the rows at `state`. Not collective.
 double left_across(const Model& model, const Scheme& scheme, const State& state,
-                   const Solution& solution);
+                   const Solution& solution, const Rows& here);
 
 }  // namespace trocar::step

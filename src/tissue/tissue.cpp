@@ -180,6 +180,25 @@ OwnedField Tissue::prescribed_increment(const OwnedField& iterate, const TimeSte
   return prescribed;
 }
 
+/// The operator of a linearisation at the present place, for whoever solves.
+solve::Linearisation Tissue::with_operator(const fem::Load& more)
+{
+  solve::Linearisation at;
+  at.factor = &current_->factor;
+  at.loads_follow = static_cast<bool>(more.stiffness);
+  at.product = [this, stiffness = more.stiffness](const OwnedField& d) {
+    OwnedField product = times(d);
+    if (stiffness) product.value -= stiffness(d).value;
+    return product;
+  };
+  at.refactor = [this]() -> core::Outcome<core::Done> {
+    const auto made = make_factor(current_->at);
+    if (!made) return without_factor(made.refusal());
+    return made;
+  };
+  return at;
+}
+
 core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
                                                       const OwnedField& iterate,
                                                       const TimeStep& step, const fem::Load& more,
@@ -191,9 +210,7 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
     if (const auto made = go_on_with_factor(old, step); !made)
       return without_factor(made.refusal());
   if (const auto made = use_operator(at_, step); !made) return without_factor(made.refusal());
-  solve::Linearisation at;
-  at.factor = &current_->factor;
-  at.loads_follow = static_cast<bool>(more.stiffness);
+  solve::Linearisation at = with_operator(more);
   // Iterations end where rounding of the forces does, or would run on and on where nothing happens.
   // Under loads that follow r is the rest of large ones.
   const bool known = forces_known(old, iterate, goes_on);
@@ -211,16 +228,6 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
   at.iterate = iterate;
   at.base = {iterate.value + prescribed.value};
   at.residual = std::move(r);
-  at.product = [this, stiffness = more.stiffness](const OwnedField& d) {
-    OwnedField product = times(d);
-    if (stiffness) product.value -= stiffness(d).value;
-    return product;
-  };
-  at.refactor = [this]() -> core::Outcome<core::Done> {
-    const auto made = make_factor(current_->at);
-    if (!made) return without_factor(made.refusal());
-    return made;
-  };
   if (!at.lagged()) return at;
   at.least = least_rest(known ? configured_.sizes : sizes, at.loads_follow ? 1e-10 : 1e-12);
   if (!step.start && !goes_on) {

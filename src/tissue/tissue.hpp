@@ -193,6 +193,7 @@ class Tissue
   core::Outcome<core::Done> make_factor(const Configuration& at);
   core::Outcome<core::Done> go_on_with_factor(const TissueState& old, const TimeStep& step);
   core::Refusal without_factor(const core::Refusal& refusal) const;
+  solve::Linearisation with_operator(const fem::Load& more);
   bool may_lag() const;
   Operator& operator_for(const core::Rates& rate);
   bool factor_worn() const;

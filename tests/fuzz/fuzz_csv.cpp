@@ -14,20 +14,17 @@ Tally tally("csv");
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   using namespace trocar;
-  ++fuzz::tally.inputs;
-  try {
+  fuzz::Tally& tally = fuzz::tally;
+  return fuzz::tried(tally, core::ExitCode::data, [&] {
     const std::string text(reinterpret_cast<const char*>(data), size);
-    if (text.find("time,factor\n") != std::string::npos) ++fuzz::tally.past_header;
+    if (text.find("time,factor\n") != std::string::npos) ++tally.past_header;
     const core::Csv table = core::parse_csv(text, "f.csv");
     core::require_time_column(table);
-    ++fuzz::tally.read;
-    if (table.columns.size() < 2) return 0;
+    ++tally.read;
+    if (table.columns.size() < 2) return;
     core::interpolate(table, 1, 0.7);
-    ++fuzz::tally.accepted;
-  } catch (const core::Failure& failure) {
-    fuzz::require_one_line(failure, core::ExitCode::data);
-  }
-  return 0;
+    ++tally.accepted;
+  });
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,

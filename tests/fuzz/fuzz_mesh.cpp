@@ -147,21 +147,18 @@ Tally tally("mesh");
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   using namespace trocar;
-  ++fuzz::tally.inputs;
-  if (fuzz::past_header(data, size)) ++fuzz::tally.past_header;
-  try {
+  fuzz::Tally& tally = fuzz::tally;
+  if (fuzz::past_header(data, size)) ++tally.past_header;
+  return fuzz::tried(tally, core::ExitCode::data, [&] {
     const io::MshFile file = io::read_msh(fuzz::file_with(data, size));
-    ++fuzz::tally.read;
+    ++tally.read;
     mesh::Mesh mesh = io::mesh_of(file, 1e-3);
     mesh::drop_repeated(mesh);
     mesh.index_middles();
     mesh::validate(mesh);
     mesh::judge(mesh);
-    ++fuzz::tally.accepted;
-  } catch (const core::Failure& failure) {
-    fuzz::require_one_line(failure, core::ExitCode::data);
-  }
-  return 0;
+    ++tally.accepted;
+  });
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,

@@ -18,18 +18,15 @@ Tally tally("options");
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   using namespace trocar;
-  ++fuzz::tally.inputs;
-  try {
+  fuzz::Tally& tally = fuzz::tally;
+  return fuzz::tried(tally, core::ExitCode::options, [&] {
     const std::string text(reinterpret_cast<const char*>(data), size);
     const auto options = core::parse_option_text(text, "f.opts");
-    ++fuzz::tally.past_header;
+    ++tally.past_header;
     for (const core::WrittenOption& one : options) core::value_of(one, one.name == "gravity");
-    ++fuzz::tally.read;
-    ++fuzz::tally.accepted;
-  } catch (const core::Failure& failure) {
-    fuzz::require_one_line(failure, core::ExitCode::options);
-  }
-  return 0;
+    ++tally.read;
+    ++tally.accepted;
+  });
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,

@@ -185,4 +185,18 @@ inline std::size_t mutate_text(const char* scene, std::uint8_t* data, std::size_
   return text.size();
 }
 
+/// One input to a reader: it may be refused, with one line and the exit code of bad input. `work`
+/// counts in the tally how far the input came.
+template <class Work>
+int tried(Tally& tally, core::ExitCode refused, const Work& work)
+{
+  ++tally.inputs;
+  try {
+    work();
+  } catch (const core::Failure& failure) {
+    require_one_line(failure, refused);
+  }
+  return 0;
+}
+
 }  // namespace trocar::fuzz

@@ -122,6 +122,63 @@ TEST(Network, AmountOfGasIsKept)
     }
 }
 
+/// A gas far above the pressure around it, which goes into another cavity as fast as it can.
+step::Scene bursting(double resistance)
+{
+  step::Scene scenario = two_cavities(Model::linear);
+  scenario.tissue.materials[0].young = 7e7;
+  for (cavity::CavitySettings& one : scenario.cavities.cavities) {
+    one.fluid.kind = law::FluidLaw::Kind::gas;
+    one.fluid.ambient = 2e3;
+    one.initial_pressure = 0.0;
+  }
+  scenario.cavities.cavities[0].initial_pressure = 2e4;
+  cavity::EdgeSettings tube;
+  tube.name = "tube";
+  tube.from = 0;
+  tube.to = 1;
+  tube.resistance = resistance;
+  scenario.cavities.edges = {tube};
+  scenario.time.step = 0.1;
+  scenario.time.end = 0.4;
+  return scenario;
+}
+
+// On the way to their pressures a step may ask for more gas than there is: it is met in halves, and
+// nothing is lost.
+TEST(Network, AGasIsNotDrainedOnTheWayToItsPressure)
+{
+  for (double resistance : {4e7, 4e8, 4e9}) {
+    const step::Scene scenario = bursting(resistance);
+    const test::Run run = test::run(scenario);  // throws where a step is rejected
+    const auto amount = [&](std::size_t n) {
+      double sum = 0.0;
+      for (const cavity::CavityState& mine : run.states[n].cavities.cavity)
+        sum += mine.amount * scenario.cavities.cavities[0].fluid.density(mine.reference);
+      return sum;
+    };
+    for (std::size_t n = 1; n < run.states.size(); ++n)
+      EXPECT_NEAR(amount(n), amount(0), 1e-13 * amount(0));
+    EXPECT_GT(run.states.back().cavities.edge[0].moved, 0.0);
+  }
+}
+
+// More gas asked for than there is, by a flow that is prescribed: refused with that reason.
+TEST(Network, ADrainedGasIsCalledThat)
+{
+  step::Scene scenario = bursting(4e9);
+  scenario.cavities.edges[0].to = -1;
+  scenario.cavities.edges[0].flow = 1e-3;
+  try {
+    test::run(scenario);
+    FAIL() << "it was drained";
+  } catch (const core::Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("more fluid would flow out within the step"),
+              std::string::npos)
+        << failure.what();
+  }
+}
+
 // Two equal cavities: their pressures meet with τ = RC/2. Exact volumes: what
 // leaves one arrives in the other.
 TEST(Network, TwoCavitiesMeet)
