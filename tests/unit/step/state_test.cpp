@@ -135,24 +135,24 @@ TEST(State, IsNotChangedByWhatWasTriedOrDropped)
   }
 }
 
-// A slender block that buckles takes the exact tangent in the middle of its steps: the factor of
-// that is made again with that, not with the one the next step begins with.
+// A cantilever that bends far over under its weight takes the exact tangent on the way to its
+// equilibrium: the factor of that is made again with that, not with the one a step begins with.
 TEST(State, SaysWithWhichTangentAFactorWasMade)
 {
-  test::BlockShape shape{8, 2, 2, Vec3(0.08, 0.02, 0.02), 0.0};
-  shape.quadratic = true;
-  Scene scene = test::needle_scenario(shape);
+  Scene scene = test::needle_scenario({15, 2, 2, Vec3(0.15, 0.02, 0.02), 0.0});
   scene.needles.clear();
   scene.tissue.model = tissue::Model::corotational;
   scene.tissue.lag_tolerance = 1e-8;
-  scene.tissue.materials = {{15000.0, 0.4, 1000.0, 0.0, 0.0}};
+  scene.tissue.materials = {{1e4, 0.4, 1000.0, 0.0, 0.0}};
   scene.tissue.boundary.fixed = {{"x0", 7}};
-  scene.tissue.boundary.displacements = {
-      {"x1", Vec3(-0.01, 0, 1e-4), core::parse_csv("time,factor\n0,0\n3,1\n", "press.csv")}};
+  scene.tissue.boundary.gravity = Vec3(0, 0, -9.81);
+  scene.tissue.boundary.tractions = {
+      {"x1", Vec3(0, 2.0, 0), core::parse_csv("time,factor\n0,0\n1,1\n", "pull.csv")}};
   scene.time.is_static = true;
   Model plain(scene, base::Comm(MPI_COMM_WORLD)), dropped(scene, base::Comm(MPI_COMM_WORLD));
   State a = initial_state(plain)->state, b = initial_state(dropped)->state;
-  int exact = 0;
+  ASSERT_TRUE(a.tissue.factor);
+  EXPECT_TRUE(a.tissue.factor->exact);
   for (int n = 1; n <= 4; ++n) {
     dropped.drop_caches();
     const core::TimeStep now{0.25 * n, 0.25, true};
@@ -164,9 +164,7 @@ TEST(State, SaysWithWhichTangentAFactorWasMade)
     EXPECT_EQ(a.tissue.factor->exact, b.tissue.factor->exact) << n;
     EXPECT_EQ(one->report.linearisations, other->report.linearisations) << n;
     EXPECT_LE((a.tissue.u.value - b.tissue.u.value).norm(), 1e-7 * a.tissue.u.value.norm());
-    exact += a.tissue.factor->exact ? 1 : 0;
   }
-  EXPECT_GT(exact, 0);
 }
 
 }  // namespace
