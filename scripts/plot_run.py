@@ -105,17 +105,17 @@ def draw_cavities(pressure, volume, cavities, time, marker):
 def cavities_figure(run):
     """Pressures, volumes, flows and tool forces against time."""
     history = run["history"]
-    cavities, edges, tools = (history.get(name, {}) for name in ("cavity", "edge", "boundary"))
+    cavities, conduits, tools = (history.get(name, {}) for name in ("cavity", "conduit", "boundary"))
     time = history["time"][:]
-    count = 2 * bool(len(cavities)) + bool(len(edges)) + bool(len(tools))
+    count = 2 * bool(len(cavities)) + bool(len(conduits)) + bool(len(tools))
     figure, axes = plt.subplots(1, count, figsize=(4.2 * count, 3.8), constrained_layout=True, squeeze=False)
     ax = iter(axes[0])
     marker = "." if len(time) < 30 else None
     if len(cavities):
         draw_cavities(next(ax), next(ax), cavities, time, marker)
-    if len(edges):
+    if len(conduits):
         flow = next(ax)
-        for name, one in edges.items():
+        for name, one in conduits.items():
             flow.plot(time, 1e6 * one["flow"][:], label=f"{name}: flow [ml/s]")
             flow.plot(time, 1e6 * one["moved"][:], ls="--", label=f"{name}: moved [ml]")
         flow.set(title="Network")

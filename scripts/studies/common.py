@@ -53,3 +53,16 @@ def last_field(folder):
     """Displacement of the last field file of a run."""
     with h5py.File(sorted((folder / "fields").glob("step_*.h5"))[-1]) as step:
         return step["displacement"][:]
+
+
+def save(figure, path, dpi=130):
+    """Writes a picture. Logarithmic axes show a decade at least: on less their labels run into each other."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = axis.get_view_interval()
+            if axis.get_scale() != "log" or high > 10.5 * low:
+                continue
+            middle, half = (low * high) ** 0.5, 10.5 ** 0.5
+            set_limits = axes.set_xlim if axis is axes.xaxis else axes.set_ylim
+            set_limits(middle / half, middle * half)
+    figure.savefig(path, dpi=dpi)

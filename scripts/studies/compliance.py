@@ -13,7 +13,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from common import ROOT, write_table
+from common import ROOT, save, write_table
 
 
 def figures(bench, *arguments):
@@ -103,7 +103,7 @@ def main():
              title="Isolated compliance, one core")
     axis.grid(alpha=0.3, which="both")
     axis.legend(frameon=False)
-    figure.savefig(folder / "compliance.png", dpi=130)
+    save(figure, folder / "compliance.png")
     print(f"wrote {folder}/compliance.csv, steps.csv, busy.csv and compliance.png")
 
 

@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt
 import matplotlib.ticker
 import numpy as np
 
-from common import ROOT
+from common import ROOT, save
 from quantities import measure
 from remesh import Scene, split_arguments
 from richardson import judge
@@ -155,7 +155,7 @@ def draw(path, scene, rows, verdicts, elements):
         axis.grid(alpha=0.3, which="both")
         axis.legend(frameon=False, fontsize=8)
     figure.suptitle(f"{scene.name}: |value − extrapolated value|, dotted: slopes 1 and 2")
-    figure.savefig(path, dpi=130)
+    save(figure, path)
     return True
 
 

@@ -12,7 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, run, write_table
+from common import ROOT, run, save, write_table
 
 WAYS = {"frozen": {"constraint_direction_max": 1}, "one update": {"constraint_direction_max": 2},
         "four updates": {"constraint_direction_max": 5},
@@ -55,7 +55,7 @@ def main():
              title="Sideways needle: directions within the step")
     axis.grid(alpha=0.3, which="both")
     axis.legend(frameon=False)
-    figure.savefig(folder / "directions.png", dpi=130)
+    save(figure, folder / "directions.png")
     print(f"wrote {folder}/directions.csv and directions.png")
 
 

@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import begin, run, write_table
+from common import begin, run, save, write_table
 
 HEIGHT, YOUNG = 0.05, 34000.0
 TOLERANCES = (1e-2, 1e-3, 1e-6, 1e-12)
@@ -131,7 +131,7 @@ def main():
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("pressure updates")
     axes[2].legend(frameon=False, fontsize=7, loc="center left", bbox_to_anchor=(1.02, 0.5))
-    figure.savefig(folder / "kp_convergence.png", dpi=130)
+    save(figure, folder / "kp_convergence.png")
     print(f"wrote {folder}/updates.csv, path.csv and kp_convergence.png")
 
 

@@ -14,7 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, run, write_table
+from common import ROOT, run, save, write_table
 
 PAPER = {1.0: (32, 0.04167), 0.5: (62, 0.02557), 0.2: (152, 0.01991), 0.1: (302, 0.01815),
          0.07: (430, 0.01815), 0.04: (752, 0.01814), "crossings": (206, 0.0175)}
@@ -84,7 +84,7 @@ def main():
            title="Table 1: dotted lines are crossings")
     ax.grid(alpha=0.3, which="both")
     ax.legend(frameon=False, fontsize=8)
-    figure.savefig(folder / "table1.png", dpi=130)
+    save(figure, folder / "table1.png")
     print(f"wrote {folder}/table1.csv and table1.png")
 
 

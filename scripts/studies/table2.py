@@ -16,7 +16,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, run, write_table
+from common import ROOT, run, save, write_table
 
 SPACINGS = [12, 10, 8, 6, 4, 2, 1, 0.5]
 CROSSINGS = {"crossings, raw": 0, "crossings, merged": 0.3}
@@ -101,7 +101,7 @@ def picture(folder, rows, spacings):
                ylabel="median time with factor of W_bb [ms]" if time else "mean iterations")
         ax.grid(alpha=0.3, which="both")
     axes[0].legend(frameon=False, fontsize=7)
-    figure.savefig(folder / "table2.png", dpi=110)
+    save(figure, folder / "table2.png", dpi=110)
 
 
 def main():

@@ -27,7 +27,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import ROOT, write_table
+from common import ROOT, save, write_table
 from precision_scenes import P1, P2, scenes
 from precision_steps import SCHEMES, SOLVERS, STEPS, constraint_solvers, time_steps
 
@@ -150,7 +150,7 @@ def draw(name, rows, methods, folder):
     axes[0, 0].set(ylabel="median residual [m]" if name == "constraints" else "relative error",
                    title=name.replace("_0", ", ν = 0").replace("_dt", ", time steps"))
     axes[0, 0].legend(frameon=False, fontsize=8)
-    figure.savefig(folder / f"{name}.png", dpi=130)
+    save(figure, folder / f"{name}.png")
     plt.close(figure)
 
 

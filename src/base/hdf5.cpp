@@ -94,6 +94,13 @@ H5Id H5File::open_object(const std::string& path) const
   return checked(H5Oopen(file_.get(), path.c_str(), H5P_DEFAULT), H5Oclose, path);
 }
 
+void H5File::link(const std::string& target, const std::string& path)
+{
+  const H5Id links = checked(H5Pcreate(H5P_LINK_CREATE), H5Pclose, path);
+  check(H5Pset_create_intermediate_group(links.get(), 1), path);
+  check(H5Lcreate_soft(target.c_str(), file_.get(), path.c_str(), links.get(), H5P_DEFAULT), path);
+}
+
 void H5File::write_block(const std::string& path, const void* values, std::int64_t type,
                          std::size_t count, std::size_t columns, const std::string& units)
 {

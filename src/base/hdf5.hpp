@@ -71,6 +71,8 @@ class H5File
                                 const std::string& bytes) const;
 
   void make_group(const std::string& path);
+  /// Makes `path` a soft link to `target`, which need not exist yet.
+  void link(const std::string& target, const std::string& path);
   /// Copies an object with all below it from another file, and its attributes.
   void copy(const H5File& from, const std::string& path);
   /// Names of what is at the top.

@@ -41,64 +41,6 @@ bool Cavities::any(Model model) const
                      [&](const CavitySettings& one) { return one.model == model; });
 }
 
-State Cavities::start() const
-{
-  State state;
-  for (int i = 0; i < size(); ++i) {
-    const CavitySettings& one = settings_.cavities[index(i)];
-    CavityState cavity;
-    cavity.whole = one.volume > 0.0 ? one.volume : walls_[index(i)].volume();
-    cavity.amount = cavity.whole;
-    if (one.volume_curve) cavity.amount *= core::interpolate(*one.volume_curve, 1, 0.0);
-    cavity.given =
-        one.fluid.kind == law::FluidLaw::Kind::pressure || one.initial_pressure.has_value();
-    state.cavity.push_back(cavity);
-  }
-  state.edge.resize(settings_.edges.size());
-  return state;
-}
-
-/// The first of these stretches that lies inside the wall; null: none.
-const VoidPiece* Cavities::entered(int cavity, const std::vector<VoidPiece>& voids,
-                                   const Shape& shape) const
-{
-  const Wall& wall = walls_[index(cavity)];
-  for (const VoidPiece& piece : voids)
-    if (wall.holds(piece.place - wall.reference(), shape[index(cavity)])) return &piece;
-  return nullptr;
-}
-
-State Cavities::advance(const State& old, double t_old, double t,
-                        const std::vector<std::vector<VoidPiece>>& voids, const OwnedField& u) const
-{
-  State next = old;
-  for (int i = 0; i < size(); ++i) {
-    const auto& curve = settings_.cavities[index(i)].volume_curve;
-    CavityState& mine = next.cavity[index(i)];
-    if (curve)
-      mine.amount +=
-          mine.whole * (core::interpolate(*curve, 1, t) - core::interpolate(*curve, 1, t_old));
-  }
-  Shape now;  // looked at only when a needle is in some void
-  for (std::size_t e = 0; e < settings_.edges.size(); ++e) {
-    const EdgeSettings& edge = settings_.edges[e];
-    if (edge.needle < 0) continue;
-    EdgeState& state = next.edge[e];
-    const std::vector<VoidPiece>& mine = voids[index(edge.needle)];
-    state.needle_in = !mine.empty();  // and in every cavity that the edge joins
-    if (mine.empty()) continue;
-    if (now.empty()) now = shape(u);
-    for (int i : {edge.from, edge.to}) {
-      if (i < 0) continue;
-      const VoidPiece* piece = entered(i, mine, now);
-      state.needle_in = state.needle_in && piece;
-      if (piece && !state.pierced) state.channel = piece->channel;
-    }
-    state.pierced = state.pierced || state.needle_in;
-  }
-  return next;
-}
-
 Shape Cavities::shape(const OwnedField& u) const
 {
   Shape shape;
@@ -115,10 +57,11 @@ VecX Cavities::volumes(const Shape& shape) const
   return volumes;
 }
 
-VecX Cavities::pressures(const State& state) const
+VecX pressures(const State& state)
 {
-  VecX p(size());
-  for (int i = 0; i < size(); ++i) p[i] = state.cavity[index(i)].pressure;
+  VecX p(static_cast<Eigen::Index>(state.cavity.size()));
+  for (std::size_t i = 0; i < state.cavity.size(); ++i)
+    p[static_cast<Eigen::Index>(i)] = state.cavity[i].pressure;
   return p;
 }
 
@@ -129,11 +72,15 @@ double Cavities::given_pressure(int i, const TimeStep& now) const
   return now.load * one.pressure.at(now.t);
 }
 
-/// Volume gradient of the wall as its pressure sees it.
 VecX Cavities::gradient(int i, const Shape& shape) const
 {
   if (settings_.cavities[index(i)].model != Model::follower) return g0_[index(i)];
   return law::volume_gradient(walls_[index(i)].surface(), shape[index(i)]);
+}
+
+OwnedField Cavities::unit_load(int i) const
+{
+  return walls_[index(i)].to_nodes(g0_[index(i)], *space_);
 }
 
 /// Forces of the fluid's weight on the wall as it sees it.
@@ -194,20 +141,6 @@ OwnedField Cavities::forces(const State& state, const Shape& shape, const TimeSt
     f.value += walls_[index(i)].to_nodes(mine, *space_).value;
   }
   return f;
-}
-
-void Cavities::hold_volume(int cavity, double volume, State& state)
-{
-  CavityState& mine = state.cavity[index(cavity)];
-  mine.held = true;
-  mine.given = false;
-  mine.amount = volume;
-}
-
-const law::FluidLaw& Cavities::law_of(int i, const State& state) const
-{
-  static const law::FluidLaw constant_volume;
-  return state.cavity[index(i)].held ? constant_volume : settings_.cavities[index(i)].fluid;
 }
 
 }  // namespace trocar::cavity

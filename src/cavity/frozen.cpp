@@ -1,15 +1,14 @@
+#include "cavity/frozen.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "cavity/cavities.hpp"
 #include "core/dense.hpp"
 #include "core/words.hpp"
 
-// Pressures of frozen cavities: the load does not follow the wall but the volume is exact, so that
-// the pressure is sought outside the (symmetric) constraint system, as in the fluid paper.
 namespace trocar::cavity {
 namespace {
 
@@ -17,85 +16,102 @@ constexpr int most_newton = 100;
 
 }  // namespace
 
-std::vector<int> Cavities::frozen(const State& state) const
+std::vector<int> frozen(const Cavities& cavities, const State& state)
 {
   std::vector<int> list;
-  for (int i = 0; i < size(); ++i)
-    if (settings_.cavities[index(i)].model == Model::frozen && !state.cavity[index(i)].given)
-      list.push_back(i);
+  for (int i = 0; i < cavities.size(); ++i)
+    if (cavities.one(i).model == Model::frozen && !state.cavity[index(i)].given) list.push_back(i);
   return list;
 }
 
-OwnedField Cavities::unit_load(int cavity) const
-{
-  return walls_[index(cavity)].to_nodes(g0_[index(cavity)], *space_);
-}
-
-void Cavities::set_pressures(const std::vector<int>& which, const VecX& p, State& state)
+void set_pressures(const std::vector<int>& which, const VecX& p, State& state)
 {
   for (std::size_t k = 0; k < which.size(); ++k)
     state.cavity[index(which[k])].pressure = p[static_cast<Eigen::Index>(k)];
 }
 
-int Cavities::most_updates() const
+int most_updates(const Cavities& cavities)
 {
   int most = 0;
-  for (const CavitySettings& one : settings_.cavities) most = std::max(most, one.most_updates);
+  for (const CavitySettings& one : cavities.settings().cavities)
+    most = std::max(most, one.most_updates);
   return most;
 }
 
-bool Cavities::proportional() const
+bool proportional(const Cavities& cavities)
 {
-  for (const CavitySettings& one : settings_.cavities)
+  for (const CavitySettings& one : cavities.settings().cavities)
     if (one.model == Model::frozen) return one.solver == Solver::proportional;
   return false;
 }
 
+namespace {
+
 /// One step of the proportional control, p += K_p (V_law - V)/V_0.
-VecX Cavities::proportional_step(const State& state, const Shape& shape, const VecX& gain,
-                                 const TimeStep& now) const
+VecX proportional_step(const Cavities& cavities, const State& state, const Shape& shape,
+                       const VecX& gain, const TimeStep& now)
 {
-  const VecX V = volumes(shape);
-  const Fluid fluids = fluid(state, pressures(state), now);
-  const std::vector<int> which = frozen(state);
+  const VecX V = cavities.volumes(shape);
+  const Fluid fluids = fluid(cavities, state, pressures(state), now);
+  const std::vector<int> which = frozen(cavities, state);
   VecX p = pressures(state)(which);
   for (std::size_t k = 0; k < which.size(); ++k)
     p[static_cast<Eigen::Index>(k)] += gain[static_cast<Eigen::Index>(k)] *
                                        (fluids.volume[which[k]] - V[which[k]]) /
-                                       walls_[index(which[k])].volume();
+                                       cavities.wall(which[k]).volume();
   return p;
 }
 
 /// Cubics of the frozen cavities' volumes over changes of their pressures.
-std::vector<law::VolumeCubic> Cavities::cubics(const std::vector<int>& which, const Shape& shape,
-                                               const std::vector<OwnedField>& per_p) const
+std::vector<law::VolumeCubic> volume_cubics(const Cavities& cavities, const std::vector<int>& which,
+                                            const Shape& shape,
+                                            const std::vector<OwnedField>& per_p)
 {
   std::vector<law::VolumeCubic> cubics;
   for (int i : which) {
-    const Wall& wall = walls_[index(i)];
+    const Wall& wall = cavities.wall(i);
     MatX y(wall.undeformed().size(), 1 + static_cast<Eigen::Index>(which.size()));
     y.col(0) = shape[index(i)];
     for (std::size_t k = 0; k < which.size(); ++k)
-      y.col(1 + static_cast<Eigen::Index>(k)) = wall.at_vertices(per_p[k], *space_);
+      y.col(1 + static_cast<Eigen::Index>(k)) = wall.at_vertices(per_p[k], cavities.space());
     cubics.emplace_back(wall.surface(), y);
   }
   return cubics;
 }
 
-/// What the volumes miss their fluids' by, and its slope, where the pressures have changed.
-Cavities::Miss Cavities::miss(const State& state, const std::vector<int>& which,
-                              const std::vector<law::VolumeCubic>& cubics, const VecX& change,
-                              const TimeStep& now) const
+/// Where the pressures are sought: the volumes of the frozen cavities are cubics of their changes.
+struct Search
 {
-  VecX p = pressures(state);
+  const Cavities& cavities;
+  const State& state;
+  const std::vector<int>& which;
+  const std::vector<law::VolumeCubic>& cubics;
+  const TimeStep& now;
+};
+
+struct Miss
+{
+  VecX volume;       ///< V - V_law [m³]
+  MatX slope;        ///< by the pressures [m³/Pa]
+  double worst;      ///< largest |V - V_law| / V_0
+  int at;            ///< of this cavity
+  double round_off;  ///< of that
+};
+
+/// What the volumes miss their fluids' by, and its slope, where the pressures have changed.
+Miss miss(const Search& search, const VecX& change)
+{
+  const Cavities& cavities = search.cavities;
+  const std::vector<int>& which = search.which;
+  VecX p = pressures(search.state);
   p(which) += change;
-  const Fluid fluids = fluid(state, p, now);
+  const Fluid fluids = fluid(cavities, search.state, p, search.now);
   Miss miss{VecX(change.size()), fluids.compliance(which, which), 0.0, 0, 0.0};
   for (Eigen::Index k = 0; k < change.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    miss.volume[k] = cubics[at].value(change) - fluids.volume[which[at]];
-    miss.slope.row(k) += cubics[at].gradient(change);
-    const double V0 = walls_[index(which[at])].volume();
+    miss.volume[k] = search.cubics[at].value(change) - fluids.volume[which[at]];
+    miss.slope.row(k) += search.cubics[at].gradient(change);
+    const double V0 = cavities.wall(which[at]).volume();
     miss.round_off = std::max(miss.round_off, fluids.round_off[which[at]] / V0);
     if (std::abs(miss.volume[k]) / V0 < miss.worst) continue;
     miss.worst = std::abs(miss.volume[k]) / V0;
@@ -104,23 +120,25 @@ Cavities::Miss Cavities::miss(const State& state, const std::vector<int>& which,
   return miss;
 }
 
-core::Outcome<VecX> Cavities::next_pressures(const State& state, const Shape& shape,
-                                             const PressureAnswers& answers,
-                                             const TimeStep& now) const
+}  // namespace
+
+core::Outcome<VecX> next_pressures(const Cavities& cavities, const State& state, const Shape& shape,
+                                   const PressureAnswers& answers, const TimeStep& now)
 {
-  if (proportional()) return proportional_step(state, shape, answers.gain, now);
-  const std::vector<int> which = frozen(state);
-  const bool to_the_root = settings_.cavities[index(which.front())].solver == Solver::exact;
-  const std::vector<law::VolumeCubic> curves = cubics(which, shape, answers.per_p);
+  if (proportional(cavities)) return proportional_step(cavities, state, shape, answers.gain, now);
+  const std::vector<int> which = frozen(cavities, state);
+  const bool to_the_root = cavities.one(which.front()).solver == Solver::exact;
+  const std::vector<law::VolumeCubic> curves = volume_cubics(cavities, which, shape, answers.per_p);
+  const Search search{cavities, state, which, curves, now};
   const VecX p = pressures(state)(which);
   const auto refused = [&](const Miss& here, const std::string& what) {
     const int cavity = which[static_cast<std::size_t>(here.at)];
-    return core::Refusal{"cavity '" + settings_.cavities[index(cavity)].name + "': " + what};
+    return core::Refusal{"cavity '" + cavities.one(cavity).name + "': " + what};
   };
   VecX change = VecX::Zero(p.size()), step = change;
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_newton; ++iteration) {
-    const Miss here = miss(state, which, curves, change, now);
+    const Miss here = miss(search, change);
     const double enough = 1e-14 + here.round_off;
     if (here.worst <= 1e-15 || (here.worst >= before && here.worst <= enough)) break;
     if (here.worst > before) {  // too far: back by half
@@ -144,11 +162,11 @@ core::Outcome<VecX> Cavities::next_pressures(const State& state, const Shape& sh
   return VecX(p + change);
 }
 
-double Cavities::line_gain(int cavity, const OwnedField& per_p) const
+double line_gain(const Cavities& cavities, int cavity, const OwnedField& per_p)
 {
-  const Wall& wall = walls_[index(cavity)];
+  const Wall& wall = cavities.wall(cavity);
   MatX y(wall.undeformed().size(), 2);
-  y << wall.undeformed(), wall.at_vertices(per_p, *space_);
+  y << wall.undeformed(), wall.at_vertices(per_p, cavities.space());
   const law::VolumeCubic cubic(wall.surface(), y);
   constexpr int points = 25;
   VecX p(points), ratio(points);
@@ -162,7 +180,7 @@ double Cavities::line_gain(int cavity, const OwnedField& per_p) const
   const VecX r = ratio.array() - ratio.mean();
   const double gain = r.dot(p) / r.squaredNorm();
   if (!(gain > 0.0 && std::isfinite(gain)))
-    throw core::solver_error("cavity '" + settings_.cavities[index(cavity)].name +
+    throw core::solver_error("cavity '" + cavities.one(cavity).name +
                              "': no line through its volumes between 0.7 and 1.3 V_0: give "
                              "-cavity_gain");
   return gain;

@@ -10,7 +10,7 @@ const PressureAnswers& PressureSearch::unit_pressure_responses(const State& stat
                                                                solve::LaggedFactor& factor)
 {
   constexpr std::size_t most_kept = 2;
-  const std::vector<int> which = cavities_->frozen(state);
+  const std::vector<int> which = frozen(*cavities_, state);
   const auto known = responses_.find(now.rates());
   // Pressures that are given at the start only join later.
   if (known != responses_.end() && known->second.per_p.size() == which.size()) return known->second;
@@ -19,9 +19,9 @@ const PressureAnswers& PressureSearch::unit_pressure_responses(const State& stat
   for (std::size_t k = 0; k < which.size(); ++k) {
     answers.per_p.push_back(factor.answer(cavities_->unit_load(which[k])));
     double& gain = answers.gain[static_cast<Eigen::Index>(k)];
-    gain = cavities_->settings().cavities[static_cast<std::size_t>(which[k])].gain;
-    if (cavities_->proportional() && gain == 0.0)
-      gain = cavities_->line_gain(which[k], answers.per_p.back());
+    gain = cavities_->one(which[k]).gain;
+    if (proportional(*cavities_) && gain == 0.0)
+      gain = line_gain(*cavities_, which[k], answers.per_p.back());
   }
   return responses_[now.rates()] = std::move(answers);
 }
@@ -33,10 +33,11 @@ PressureAnswers PressureSearch::with_rows(const constraint::Laws& laws,
 {
   PressureAnswers answers = alone;
   const constraint::System& system = laws.system();
-  if (system.empty() || cavities_->proportional()) return answers;
+  if (system.empty() || proportional(*cavities_)) return answers;
   for (OwnedField& w : answers.per_p) {
     const VecX moved = system.row_displacements(solve::read(system.probes(), w, factor.space()));
-    const VecX more = law::response(laws.problem(), laws.multipliers(), moved);
+    const VecX more =
+        law::response(laws.problem(), laws.multipliers(), moved, laws.settings().solver.tolerance);
     w.value += factor.answer(system.forces(more, factor.space())).value;
   }
   return answers;
@@ -49,10 +50,10 @@ core::Outcome<constraint::Saddle> PressureSearch::solve(constraint::Laws& laws,
   const constraint::System& system = laws.system();
   const OwnedField free = at.alone();
   const PressureAnswers& alone = unit_pressure_responses(state, now, *at.factor);
-  const std::vector<int> which = cavities_->frozen(state);
-  cavities_->take({}, {}, now, state);
+  const std::vector<int> which = frozen(*cavities_, state);
+  take_pressures(*cavities_, {}, {}, now, state);
   for (updates_ = 0;; ++updates_) {
-    const VecX p = cavities_->pressures(state)(which);
+    const VecX p = pressures(state)(which);
     OwnedField u = free;  // + A⁻¹Hᵀλ + Σ p A⁻¹g_0
     for (std::size_t k = 0; k < alone.per_p.size(); ++k)
       u.value += p[static_cast<Eigen::Index>(k)] * alone.per_p[k].value;
@@ -64,15 +65,15 @@ core::Outcome<constraint::Saddle> PressureSearch::solve(constraint::Laws& laws,
     }
     ++laws.report().passes;
     const Shape shape = cavities_->shape(u);
-    if (cavities_->closed(state, shape, now))
+    if (closed(*cavities_, state, shape, now))
       return constraint::Saddle{std::move(u), laws.take(), laws.problem()};
-    if (updates_ == cavities_->most_updates())
+    if (updates_ == most_updates(*cavities_))
       return core::Refusal{"the volumes of the cavities are not reached in " +
                            std::to_string(updates_) + " updates of the pressure"};
     const auto next =
-        cavities_->next_pressures(state, shape, with_rows(laws, alone, *at.factor), now);
+        next_pressures(*cavities_, state, shape, with_rows(laws, alone, *at.factor), now);
     if (!next) return next.refusal();
-    Cavities::set_pressures(which, *next, state);
+    set_pressures(which, *next, state);
     ++ledger_->pressure_updates;
   }
 }

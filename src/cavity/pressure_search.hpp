@@ -2,7 +2,8 @@
 
 #include <map>
 
-#include "cavity/cavities.hpp"
+#include "cavity/frozen.hpp"
+#include "cavity/rows.hpp"
 #include "constraint/saddle.hpp"
 
 namespace trocar::cavity {

@@ -55,7 +55,7 @@ struct CavitySettings
 };
 
 /// A way for fluid; with a needle it opens when the needle's tip comes through the wall.
-struct EdgeSettings
+struct ConduitSettings
 {
   std::string name;
   int from = -1, to = -1;   ///< cavities; -1: outside
@@ -63,7 +63,7 @@ struct EdgeSettings
   bool valve = false;       ///< only from `from` to `to`
   double flow = 0.0;        ///< prescribed, through the needle when there is one [m³/s]
   std::optional<core::Csv> flow_curve{};  ///< factor on it (time, factor)
-  int needle = -1;                        ///< that opens the edge, -1: it is always open
+  int needle = -1;                        ///< that opens the conduit, -1: it is always open
   double needle_radius = 0.0;             ///< [m]
   double gap = 0.0;                       ///< between needle and tissue, 0: none given [m]
   double hole_resistance = 0.0;           ///< after withdrawal, 0: see hole_radius [Pa s/m³]
@@ -75,7 +75,7 @@ struct EdgeSettings
 struct Settings
 {
   std::vector<CavitySettings> cavities;
-  std::vector<EdgeSettings> edges;
+  std::vector<ConduitSettings> conduits;
 };
 
 }  // namespace trocar::cavity

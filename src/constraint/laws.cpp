@@ -40,7 +40,8 @@ Outcome<Done> Laws::meet(solve::LaggedFactor& factor, const core::VecX& free,
       return core::Refusal{"the laws of the fluids do not settle"};
   }
   same_states_ =
-      settlements == 0 && last.converged && law::same_states(problem_, last.lambda, answer_.lambda);
+      settlements == 0 && last.converged &&
+      law::same_states(problem_, last.lambda, answer_.lambda, settings_->solver.tolerance);
   if (!last.converged) law::compare(problem_, settings_->compare, report.trials);
 
   report.rows = system_->size();

@@ -9,8 +9,8 @@ namespace {
 using core::VecX;
 using solve::OwnedField;
 
-/// Passes, beside those that cost as much as a factor, before one is made; and with a factor of its
-/// own under loads that follow.
+/// Most passes with an older factor, beyond the cost of a new one; and most with an up-to-date
+/// factor under loads that follow.
 constexpr int most_passes = 8, most_passes_of_own = 200;
 
 /// The way to the saddle point so far.

@@ -1,8 +1,39 @@
 #include "constraint/set.hpp"
 
 #include <algorithm>
+#include <string>
+
+#include "core/failure.hpp"
 
 namespace trocar::constraint {
+
+Row Row::between(TissueTerm tissue, int body, const std::vector<std::pair<int, double>>& jacobian)
+{
+  Row row;
+  row.tissue.push_back(std::move(tissue));
+  row.body = body;
+  for (const auto& [dof, coefficient] : jacobian) row.on_body.push_back({dof, coefficient});
+  return row;
+}
+
+int Set::add(std::vector<Row> rows, const law::Law& law, int point)
+{
+  if (static_cast<int>(rows.size()) != law.rows())
+    throw core::Failure(
+        core::ExitCode::internal,
+        "a law of " + std::to_string(law.rows()) + " rows is given " + std::to_string(rows.size()));
+  const int first = size();
+  blocks_.push_back({first, law, point});
+  for (Row& row : rows) rows_.push_back(std::move(row));
+  return first;
+}
+
+int Set::add(Row row, const law::Law& law, int point)
+{
+  std::vector<Row> one;
+  one.push_back(std::move(row));
+  return add(std::move(one), law, point);
+}
 
 int Set::add_wide(std::shared_ptr<const solve::WideProbe> probe)
 {
@@ -14,9 +45,10 @@ solve::Probes Set::probes() const
 {
   solve::Probes probes;
   for (const Row& row : rows_)
-    for (std::size_t a = 0; a < row.anchor.node.size(); ++a)
-      if (row.anchor.weight[static_cast<Eigen::Index>(a)] != 0.0)
-        probes.nodes.push_back(row.anchor.node[a]);
+    for (const TissueTerm& term : row.tissue)
+      for (std::size_t a = 0; a < term.anchor.node.size(); ++a)
+        if (term.anchor.weight[static_cast<Eigen::Index>(a)] != 0.0)
+          probes.nodes.push_back(term.anchor.node[a]);
   std::sort(probes.nodes.begin(), probes.nodes.end());
   probes.nodes.erase(std::unique(probes.nodes.begin(), probes.nodes.end()), probes.nodes.end());
   for (const auto& wide : wide_) probes.wide.push_back(wide.get());

@@ -6,7 +6,7 @@
 
 #include "core/dense.hpp"
 #include "law/problem.hpp"
-#include "solve/isolated_compliance.hpp"
+#include "solve/probes.hpp"
 
 namespace trocar::constraint {
 
@@ -38,38 +38,63 @@ struct Anchor
   }
 };
 
-/// One constraint row: δ = gap + direction·u(anchor) - h·w, where w are the increments of the
-/// small body (the needle). λ > 0 pushes the tissue along `direction` and the body against it.
-/// A wide row takes hold of many dofs at once: δ = gap + g·u with the set's wide probe g.
-struct Row
+/// The tissue at a material place, in a direction: direction · u(anchor).
+struct TissueTerm
 {
-  Anchor anchor{};
-  Vec3 direction = Vec3::Zero();              ///< unit, world frame
-  int body = -1;                              ///< index of the small body, -1: nothing moves there
-  std::vector<std::pair<int, double>> lever;  ///< (dof of the body, coefficient)
-  double gap = 0.0;                           ///< δ at zero increments [m]
-  law::RowKind kind = law::RowKind::bilateral;
-  double bound = 0.0;              ///< F of a box or push row [N]
-  int normal = -1;                 ///< row of this set whose λ gives the bound F = friction · λ
-  double friction = 0.0;           ///< coefficient of such a row
-  double softness = 0.0;           ///< c of a smooth row, δ = -c λ [m/N]
-  double relative_softness = 0.0;  ///< more softness, in units of the row's own W_ii
-  double start = 0.0;              ///< multiplier to start from [N]
-  int point = 0;                   ///< coupling point, ascending along the set
-  int wide = -1;                   ///< wide probe of the set, instead of an anchor
+  Anchor anchor;
+  Vec3 direction = Vec3::Zero();  ///< world frame
 };
 
-/// The rows of one step. Born and gone within it.
+/// A dof of the row's small body: -coefficient · w_dof.
+struct BodyTerm
+{
+  int dof;
+  double coefficient;
+};
+
+/// A functional of many dofs of the tissue: coefficient · (g·u), g the set's wide probe.
+struct DistributedTerm
+{
+  int probe;
+  double coefficient = 1.0;
+};
+
+/// One constraint row: δ = gap + Σ terms. λ > 0 pushes the tissue along its directions and the body
+/// against them. `start` is the multiplier to start from.
+struct Row
+{
+  double gap = 0.0;  ///< δ at zero increments [m]
+  std::vector<TissueTerm> tissue{};
+  int body = -1;  ///< index of the small body, -1: none
+  std::vector<BodyTerm> on_body{};
+  std::vector<DistributedTerm> distributed{};
+  double softness = 0.0;           ///< c of a compliant row of the law zero, δ = -c λ [m/N]
+  double relative_softness = 0.0;  ///< more softness, in units of the row's own W_ii
+  double start = 0.0;              ///< [N]
+
+  /// direction · u(anchor) - Σ coefficient · w_dof, the usual row of a needle.
+  static Row between(TissueTerm tissue, int body,
+                     const std::vector<std::pair<int, double>>& jacobian);
+};
+
+/// The rows of one step in blocks that share a law. Born and gone within it.
 class Set
 {
  public:
   bool empty() const { return rows_.empty(); }
   int size() const { return static_cast<int>(rows_.size()); }
-  void add(Row row) { rows_.push_back(std::move(row)); }
+  /// Adds a block and returns its first row. `point`: the coupling point it belongs to, not less
+  /// than those before.
+  int add(std::vector<Row> rows, const law::Law& law, int point);
+  int add(Row row, const law::Law& law, int point);
+  /// A point of its own.
+  int add(Row row, const law::Law& law = {}) { return add(std::move(row), law, next_point()); }
+  int next_point() const { return blocks_.empty() ? 0 : blocks_.back().point + 1; }
   const std::vector<Row>& rows() const { return rows_; }
+  const std::vector<law::Block>& blocks() const { return blocks_; }
   core::VecX starts() const;  ///< multipliers to start from (rows) [N]
 
-  /// Adds a wide probe and gives its index, for `Row::wide`.
+  /// Adds a wide probe and gives its index, for `DistributedTerm::probe`.
   int add_wide(std::shared_ptr<const solve::WideProbe> probe);
   /// What the rows probe: file nodes with a non-zero weight, ascending, and the wide probes, which
   /// live as long as the set.
@@ -89,6 +114,7 @@ class Set
 
  private:
   std::vector<Row> rows_;
+  std::vector<law::Block> blocks_;
   std::vector<std::shared_ptr<const solve::WideProbe>> wide_;
   std::vector<Coupling> couplings_;
 };

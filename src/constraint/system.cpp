@@ -15,22 +15,32 @@ Sparse matrix(Eigen::Index rows, Eigen::Index columns, const Entries& entries)
   return made;
 }
 
+/// Entries of one term; `slot` gives the first of a node's three.
+template <class Slot>
+void add_term(int row, const TissueTerm& term, const Slot& slot, Entries& entries)
+{
+  for (std::size_t a = 0; a < term.anchor.node.size(); ++a) {
+    const double weight = term.anchor.weight[static_cast<Eigen::Index>(a)];
+    if (weight == 0.0) continue;
+    const int first = slot(term.anchor.node[a]);
+    for (int axis = 0; axis < 3; ++axis)
+      entries.emplace_back(row, first + axis, weight * term.direction[axis]);
+  }
+}
+
 Sparse rows_on_probes(const Set& set, const solve::Probes& probes)
 {
   Entries entries;
   const int wides = 3 * static_cast<int>(probes.nodes.size());
+  const auto slot = [&](int node) {
+    const auto at = std::lower_bound(probes.nodes.begin(), probes.nodes.end(), node);
+    return 3 * static_cast<int>(at - probes.nodes.begin());
+  };
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
-    if (row.wide >= 0) entries.emplace_back(i, wides + row.wide, 1.0);
-    for (std::size_t a = 0; a < row.anchor.node.size(); ++a) {
-      const double weight = row.anchor.weight[static_cast<Eigen::Index>(a)];
-      if (weight == 0.0) continue;
-      const auto at =
-          std::lower_bound(probes.nodes.begin(), probes.nodes.end(), row.anchor.node[a]);
-      const int slot = 3 * static_cast<int>(at - probes.nodes.begin());
-      for (int axis = 0; axis < 3; ++axis)
-        entries.emplace_back(i, slot + axis, weight * row.direction[axis]);
-    }
+    for (const DistributedTerm& term : row.distributed)
+      entries.emplace_back(i, wides + term.probe, term.coefficient);
+    for (const TissueTerm& term : row.tissue) add_term(i, term, slot, entries);
   }
   return matrix(set.size(), probes.size(), entries);
 }
@@ -41,7 +51,7 @@ Sparse levers_of(const Set& set, int body, Eigen::Index dofs)
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
     if (row.body != body) continue;
-    for (const auto& [dof, coefficient] : row.lever) entries.emplace_back(i, dof, coefficient);
+    for (const auto& [dof, coefficient] : row.on_body) entries.emplace_back(i, dof, coefficient);
   }
   return matrix(set.size(), dofs, entries);
 }
@@ -111,19 +121,13 @@ law::Problem System::problem(const core::MatX& W, const core::VecX& free) const
     const Eigen::Index dofs = bodies_[b].free_increment.size();
     if (dofs > 0) problem.g -= levers_[b].rightCols(dofs) * bodies_[b].free_increment;
   }
-  problem.bound.resize(size());
   problem.start = set_.starts();
+  problem.blocks = set_.blocks();
   problem.softness.resize(size());
-  problem.friction.resize(size());
   for (int i = 0; i < size(); ++i) {
     const Row& row = set_.rows()[static_cast<std::size_t>(i)];
     problem.g[i] += row.gap;
-    problem.bound[i] = row.bound;
     problem.softness[i] = row.softness + row.relative_softness * W(i, i);
-    problem.friction[i] = row.friction;
-    problem.normal.push_back(row.normal);
-    problem.kind.push_back(row.kind);
-    problem.group.push_back(row.point);
   }
   return problem;
 }

@@ -63,7 +63,7 @@ class Options
   /// colon is not part of them.
   std::vector<std::string> new_names(const std::string& name);
   Vec3 vector(const std::string& name, const std::string& group = "");
-  /// Three words of which `free` stands for an axis without a value: NaN there.
+  /// Three numbers; the word `free` leaves an axis without a value (NaN).
   Vec3 vector_or_free(const std::string& name, const std::string& group);
 
   /// True when the user gave the option (for this group, if one is named).

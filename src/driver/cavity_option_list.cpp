@@ -56,29 +56,29 @@ std::vector<OptionSpec> model_and_solver()
   };
 }
 
-void add_edges(std::vector<OptionSpec>& t)
+void add_conduits(std::vector<OptionSpec>& t)
 {
-  t.push_back(list("edges", "ways for fluid: NAME:FROM:TO,… between cavities or `outside`"));
-  const std::vector<OptionSpec> edge{
-      not_negative("edge_<edge>_resistance", "0", "Pa s/m^3",
+  t.push_back(list("conduits", "ways for fluid: NAME:FROM:TO,… between cavities or `outside`"));
+  const std::vector<OptionSpec> conduit{
+      not_negative("conduit_<conduit>_resistance", "0", "Pa s/m^3",
                    "pressure drop over flow; 0 = closed; with a needle: while it is in"),
-      flag("edge_<edge>_valve", "flow only from FROM to TO"),
-      {"edge_<edge>_flow", OptionType::real, "0", "m^3/s",
+      flag("conduit_<conduit>_valve", "flow only from FROM to TO"),
+      {"conduit_<conduit>_flow", OptionType::real, "0", "m^3/s",
        "prescribed flow from FROM to TO, through the needle when there is one"},
-      file("edge_<edge>_curve", "CSV (columns time,factor) that scales the prescribed flow"),
-      word("edge_<edge>_needle", "",
-           "needle that opens the edge when its tip comes through the wall"),
-      not_negative("edge_<edge>_gap", "0", "m",
+      file("conduit_<conduit>_curve", "CSV (columns time,factor) that scales the prescribed flow"),
+      word("conduit_<conduit>_needle", "",
+           "needle that opens the conduit when its tip comes through the wall"),
+      not_negative("conduit_<conduit>_gap", "0", "m",
                    "gap around the needle, for the resistance of an annulus; 0 = none"),
-      not_negative("edge_<edge>_hole_resistance", "0", "Pa s/m^3",
+      not_negative("conduit_<conduit>_hole_resistance", "0", "Pa s/m^3",
                    "resistance of the hole after withdrawal; 0 = it closes"),
-      not_negative("edge_<edge>_hole_radius", "0", "m",
+      not_negative("conduit_<conduit>_hole_radius", "0", "m",
                    "radius of the hole, for a pipe's resistance"),
-      positive("edge_<edge>_viscosity", "1e-3", "Pa s", "viscosity in gap and hole"),
-      not_negative("edge_<edge>_length", "0", "m",
+      positive("conduit_<conduit>_viscosity", "1e-3", "Pa s", "viscosity in gap and hole"),
+      not_negative("conduit_<conduit>_length", "0", "m",
                    "length of gap and hole; 0 = the needle's way through tissue"),
   };
-  t.insert(t.end(), edge.begin(), edge.end());
+  t.insert(t.end(), conduit.begin(), conduit.end());
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ void add_cavity_options(std::vector<OptionSpec>& t)
   t.push_back(list("cavities", "names of the fluid-filled cavities"));
   for (const OptionSpec& spec : wall_and_fluid()) with_override(t, spec, "<cavity>");
   for (const OptionSpec& spec : model_and_solver()) with_override(t, spec, "<cavity>");
-  add_edges(t);
+  add_conduits(t);
   t.push_back(word("pv_cavity", "", "cavity of -analysis pv_curve; by default the first"));
   t.push_back(positive("pv_low", "0.7", "1", "smallest volume of the curve, part of the mesh's"));
   t.push_back(positive("pv_high", "1.3", "1", "largest one"));

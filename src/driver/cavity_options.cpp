@@ -126,7 +126,7 @@ std::string wall_of(Options& options, const std::string& name)
   return surface.empty() ? region : surface;
 }
 
-/// Frozen cavities are solved outside the constraint system, together and by one solver.
+/// All or no cavities are frozen: one solver solves them outside the constraint system.
 void require_one_way(const std::vector<cavity::CavitySettings>& cavities)
 {
   const cavity::CavitySettings* frozen = nullptr;

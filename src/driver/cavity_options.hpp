@@ -9,7 +9,7 @@ namespace trocar::driver {
 /// collective.
 mesh::Mesh with_cavities_hollow(core::Options& options, mesh::Mesh mesh);
 
-/// Cavities, edges and the P-V curve, checked against mesh, tissue and needles of the scenario.
+/// Cavities, conduits and the P-V curve, checked against mesh, tissue and needles of the scenario.
 /// Throws Failure (64, 65). Collective.
 void read_cavities(core::Options& options, Scenario& scenario, const base::Comm& comm);
 

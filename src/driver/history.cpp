@@ -27,6 +27,8 @@ class List
                        return std::vector<double>{v.x(), v.y(), v.z()};
                      }});
   }
+  /// The last one's name in older versions.
+  void keep_name(const std::string& old) { list_.back().series.old_name = old; }
   std::vector<History> take() { return std::move(list_); }
 
  private:
@@ -78,16 +80,19 @@ void add_cavity(const std::string& name, std::size_t i, List& list)
   list.number(at + "alarm", "1", [=](const Moment& now) { return report(now).alarm ? 1 : 0; });
 }
 
-void add_edge(const std::string& name, std::size_t e, List& list)
+void add_conduit(const std::string& name, std::size_t e, List& list)
 {
-  const std::string at = "edge/" + name + "/";
-  const auto edge = [e](const Moment& now) -> const cavity::EdgeState& {
-    return now.state.cavities.edge[e];
+  const auto conduit = [e](const Moment& now) -> const cavity::ConduitState& {
+    return now.state.cavities.conduit[e];
   };
-  list.number(at + "flow", "m^3/s", [=](const Moment& now) { return edge(now).flow; });
-  list.number(at + "moved", "m^3", [=](const Moment& now) { return edge(now).moved; });
-  list.number(at + "state", "1", [=](const Moment& now) {
-    return edge(now).needle_in ? 2 : edge(now).pierced ? 1 : 0;
+  const auto add = [&](const char* what, const char* unit, const auto& value) {
+    list.number("conduit/" + name + "/" + what, unit, value);
+    list.keep_name("edge/" + name + "/" + what);
+  };
+  add("flow", "m^3/s", [=](const Moment& now) { return conduit(now).flow; });
+  add("moved", "m^3", [=](const Moment& now) { return conduit(now).moved; });
+  add("state", "1", [=](const Moment& now) {
+    return conduit(now).needle_in ? 2 : conduit(now).pierced ? 1 : 0;
   });
 }
 
@@ -195,8 +200,8 @@ std::vector<History> histories(const Scenario& scenario)
     add_needle(scenario.needles[i].name, i, list);
   for (std::size_t i = 0; i < scenario.cavities.cavities.size(); ++i)
     add_cavity(scenario.cavities.cavities[i].name, i, list);
-  for (std::size_t e = 0; e < scenario.cavities.edges.size(); ++e)
-    add_edge(scenario.cavities.edges[e].name, e, list);
+  for (std::size_t e = 0; e < scenario.cavities.conduits.size(); ++e)
+    add_conduit(scenario.cavities.conduits[e].name, e, list);
   add_holders(scenario.tissue.boundary, list);
   if (scenario.energy) add_energy(list);
   add_constraints(list);

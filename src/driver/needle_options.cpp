@@ -71,7 +71,7 @@ void check_needle_names(const std::vector<std::string>& names)
                                  "' begins another option of the needle's area");
 }
 
-/// A base on the surface is outside: what counts is the shaft this part of its length behind it.
+/// A base on the surface is outside: the tested point is this part of the length behind it.
 constexpr double on_surface = 1e-6;
 
 /// Along a trajectory the base must stay outside and the tip must meet the tissue at least once.

@@ -12,7 +12,7 @@ namespace trocar::driver {
 int cavity_index(const std::vector<cavity::CavitySettings>& cavities, const std::string& name,
                  const std::string& option);
 
-/// Edges between the cavities that are read already, and outside. Throws Failure (64, 65).
+/// Conduits between the cavities that are read already, and outside. Throws Failure (64, 65).
 /// Collective.
 void read_network(core::Options& options, Scenario& scenario, const base::Comm& comm);
 

@@ -53,6 +53,13 @@ const core::OptionSpec* row_of(const std::string& name)
   return nullptr;
 }
 
+/// Options that were renamed go by their old names for one version.
+std::string present_name(const std::string& name)
+{
+  if (name == "edges") return "conduits";
+  return name.rfind("edge_", 0) == 0 ? "conduit_" + name.substr(5) : name;
+}
+
 /// Options of one source after the other, the weakest first.
 class Collector
 {
@@ -74,8 +81,11 @@ class Collector
   const std::vector<WrittenOption>& petsc() const { return petsc_; }
 
  private:
-  void take(const WrittenOption& one, const std::string& source, const fs::path& beside)
+  void take(const WrittenOption& as_written, const std::string& source, const fs::path& beside)
   {
+    WrittenOption one = as_written;
+    one.name = present_name(one.name);
+    if (one.name != as_written.name) invocation_.outdated.push_back(as_written.name);
     const core::OptionSpec* const row = row_of(one.name);
     if (!row) {
       petsc_.push_back(one);
@@ -142,6 +152,7 @@ void broadcast(Invocation& invocation, const base::Comm& comm)
   for (std::size_t i = 0; i + 3 < cells.size(); i += 4)
     invocation.given[cells[i]] = {cells[i + 1], cells[i + 2], cells[i + 3]};
   comm.broadcast(invocation.petsc);
+  comm.broadcast(invocation.outdated);
   comm.broadcast(invocation.options_file);
   comm.broadcast(invocation.options_file_text);
 }

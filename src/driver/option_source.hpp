@@ -18,6 +18,7 @@ struct Invocation
   std::string options_file_text;  ///< verbatim, of all of them in turn
   std::map<std::string, core::OptionValue> given;  ///< options of our table
   std::vector<std::string> petsc;                  ///< arguments for PETSc
+  std::vector<std::string> outdated{};             ///< old names that options came under
 };
 
 /// Reads the arguments, the environment and the options files, which may name others. Of an option

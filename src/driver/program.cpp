@@ -76,6 +76,9 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
   step::Model model(scenario, comm);
   model.tissue.analyse();
   Log log(model, scenario);
+  if (!invocation.outdated.empty())
+    log.note("-edges and -edge_* are -conduits and -conduit_* now; the old names, here -" +
+             invocation.outdated.front() + ", go with the next version");
   log.plan();
   step::prepare(model);
   refuse_unused(model.tissue.describe_solver());

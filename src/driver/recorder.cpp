@@ -28,7 +28,8 @@ std::vector<io::Field> coupling_fields(const step::Model& model, const step::Sta
   io::Field tributary{"/coupling/tributary", 0, "m", {}, false, false};
   for (std::size_t n = 0; n < state.insertions.size(); ++n) {
     const auto& insertion = state.insertions[n];
-    const core::VecX lengths = model.insertion->tributary_lengths(insertion).rowwise().sum();
+    const core::VecX lengths =
+        insertion::tributary_lengths(model.scene.mesh, insertion).rowwise().sum();
     for (std::size_t k = 0; k < insertion.points.size(); ++k) {
       const auto& point = insertion.points[k];
       const auto& anchor = insertion.path.sites[static_cast<std::size_t>(point.site)].anchor;

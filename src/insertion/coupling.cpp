@@ -1,35 +1,17 @@
+#include "insertion/coupling.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "insertion/insertion.hpp"
+#include "insertion/tip_events.hpp"
 
 // The rows that couple one needle and the tissue in a step, and what is made of their multipliers.
 namespace trocar::insertion {
-namespace {
 
-/// How far along its way from the first point a tip has passed the last place that may hold the
-/// needle: whole numbers of half edges, and below one its half, quarter, eighth.
-double passed_part(double way, double half)
-{
-  constexpr double least = 1.0 / 8.0;
-  const double halves = way / half + relative_tolerance;
-  if (halves >= 1.0) return half * std::floor(halves);
-  for (double part = 0.5; part >= least; part *= 0.5)
-    if (halves >= part) return half * part;
-  return 0.0;
-}
-
-}  // namespace
-
-double Insertion::depth(const InsertionState& state) const
-{
-  return state.path.empty() ? 0.0 : tissue_length(state.path, state.tip_arc);
-}
-
-core::MatX Insertion::tributary_lengths(const InsertionState& state) const
+core::MatX tributary_lengths(const mesh::Mesh& mesh, const InsertionState& state)
 {
   const auto points = static_cast<Eigen::Index>(state.points.size());
-  core::MatX length = core::MatX::Zero(points, static_cast<Eigen::Index>(mesh_->volumes.size()));
+  core::MatX length = core::MatX::Zero(points, static_cast<Eigen::Index>(mesh.volumes.size()));
   if (points == 0) return length;
   const auto arc_of = [&](Eigen::Index k) {
     const int site = state.points[static_cast<std::size_t>(k)].site;
@@ -37,7 +19,7 @@ core::MatX Insertion::tributary_lengths(const InsertionState& state) const
   };
   for (const Piece& piece : state.path.pieces) {
     if (piece.tet < 0) continue;
-    const int region = mesh_->region[static_cast<std::size_t>(piece.tet)];
+    const int region = mesh.region[static_cast<std::size_t>(piece.tet)];
     double at = piece.begin;
     const double end = std::min(piece.end, state.tip_arc);
     for (Eigen::Index k = 0; k < points && at < end; ++k) {
@@ -51,16 +33,27 @@ core::MatX Insertion::tributary_lengths(const InsertionState& state) const
   return length;
 }
 
-/// Limits [N] and dashpot [N s/m] of one point: the laws of the tissues its piece of path is in.
-Friction Insertion::friction_of(const InsertionState& state, const core::MatX& tributary,
-                                std::size_t point) const
+namespace {
+
+/// A coupling point as its rows are made: what its piece of path makes of it.
+struct PointOnPath
+{
+  const CouplingPoint& point;
+  const Site& site;
+  Friction friction;     ///< limits [N] and dashpot [N s/m] of its piece
+  double length = 0.0;   ///< of its piece in tissue [m]
+  bool lateral = false;  ///< it holds the shaft across,
+  double held = 0.0;     ///< with this length of path [m]
+};
+
+/// The laws of the tissues that a point's piece of path is in.
+Friction friction_of(const Ground& ground, bool withdrawing, const core::VecX& lengths)
 {
   Friction sum;
-  for (std::size_t region = 0; region < settings_.friction.size(); ++region) {
-    const double length =
-        tributary(static_cast<Eigen::Index>(point), static_cast<Eigen::Index>(region));
-    const TissueFriction& both = settings_.friction[region];
-    const Friction& law = state.withdrawing ? both.withdraw : both.advance;
+  for (std::size_t region = 0; region < ground.settings.friction.size(); ++region) {
+    const double length = lengths[static_cast<Eigen::Index>(region)];
+    const TissueFriction& both = ground.settings.friction[region];
+    const Friction& law = withdrawing ? both.withdraw : both.advance;
     sum.static_limit += length * law.static_limit;
     sum.dynamic_limit += length * law.dynamic_limit;
     sum.viscous += length * law.viscous;
@@ -68,155 +61,193 @@ Friction Insertion::friction_of(const InsertionState& state, const core::MatX& t
   return sum;
 }
 
-RadiusCorrection::Softness Insertion::radius_softness(const Site& site, int body,
-                                                      double length) const
-{
-  if (!settings_.radius_correction) return {};
-  return settings_.radius_correction->at(body, mesh_->region[static_cast<std::size_t>(site.tet)],
-                                         local_edge(*mesh_, site.tet), length);
-}
-
-void Insertion::add_axial_rows(const CouplingPoint& point, const Friction& friction, double h,
-                               double radius_softness, constraint::Row row, PointRows& mine,
-                               constraint::Set& set) const
-{
-  const auto add = [&] {
-    set.add(row);
-    return set.size() - 1;
-  };
-  if (settings_.eta > 0.0) {
-    row.relative_softness = (1.0 - settings_.eta) / settings_.eta;
-    mine.axial = add();
-    return;
-  }
-  if (h > 0.0 && friction.viscous > 0.0) {
-    row.softness = h / friction.viscous;
-    mine.viscous = add();
-    row.softness = 0.0;
-  }
-  mine.bound = point.stuck ? friction.static_limit : friction.dynamic_limit;
-  if (mine.bound > 0.0) {
-    row.kind = law::RowKind::box;
-    row.bound = mine.bound;
-    mine.axial = add();
-  }
-  if (!(radius_softness > 0.0)) return;
-  // Both laws push the same piece of shaft: its way through the tissue is that of their sum.
-  for (int row_of_law : {mine.viscous, mine.axial})
-    if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, radius_softness});
-  if (mine.viscous >= 0 && mine.axial >= 0)
-    set.couplings().push_back({mine.viscous, mine.axial, radius_softness});
-}
-
 /// Which points hold the shaft laterally: all, but when they stand closer than `merge` local edges
 /// along a path that is not straight, the first of all and the last one of each tet that the tip
 /// has left, which is where crossings would be. In a tet the displacement is linear, so that more
 /// points on a curve contradict each other by little, and fight it out with huge forces.
-std::vector<bool> Insertion::lateral_points(const InsertionState& state) const
+std::vector<bool> lateral_points(const Ground& ground, const InsertionState& state)
 {
   const std::size_t count = state.points.size();
-  const PlacementSettings& placement = settings_.placement;
+  const PlacementSettings& placement = ground.settings.placement;
   std::vector<bool> lateral(count, true);
   if (placement.placement == Placement::crossings || straight(state.path)) return lateral;
   for (std::size_t k = 1; k < count; ++k) {
     const int tet = state.path.sites[k].tet;
-    const double edge = local_edge(*mesh_, tet);
+    const double edge = local_edge(ground.mesh, tet);
     const bool last_of_tet = k + 1 < count && tet != state.path.sites[k + 1].tet;
     lateral[k] = last_of_tet || placement.spacing >= placement.merge * edge;
   }
   return lateral;
 }
 
-PointRows Insertion::add_point_rows(const CouplingPoint& point, bool lateral, const Path& path,
-                                    const Friction& friction, double length, double held,
-                                    const needle::Shaft& shaft, const Deformed& tissue, int body,
-                                    double h, constraint::Set& set) const
+std::vector<PointOnPath> points_on_path(const Ground& ground, const InsertionState& state)
+{
+  const core::MatX tributary = tributary_lengths(ground.mesh, state);
+  const std::vector<bool> lateral = lateral_points(ground, state);
+  std::vector<PointOnPath> points;
+  double held = 0.0;
+  for (std::size_t k = 0; k < state.points.size(); ++k) {
+    const core::VecX lengths = tributary.row(static_cast<Eigen::Index>(k));
+    const CouplingPoint& point = state.points[k];
+    held += lengths.sum();
+    points.push_back({point, state.path.sites[static_cast<std::size_t>(point.site)],
+                      friction_of(ground, state.withdrawing, lengths), lengths.sum(), lateral[k],
+                      held});
+    if (lateral[k]) held = 0.0;
+  }
+  return points;
+}
+
+RadiusCorrection::Softness radius_softness(const Ground& ground, const Site& site, int body,
+                                           double length)
+{
+  if (!ground.settings.radius_correction) return {};
+  return ground.settings.radius_correction->at(
+      body, ground.mesh.region[static_cast<std::size_t>(site.tet)],
+      local_edge(ground.mesh, site.tet), length);
+}
+
+/// A material place and where it is on the shaft.
+struct Hold
+{
+  Hold(const constraint::Anchor& anchor_of, const Iterate& at_iterate)
+      : anchor(anchor_of),
+        at(at_iterate),
+        x(at.tissue.position(anchor)),
+        on_shaft(needle::project(at.shaft, x))
+  {
+  }
+
+  /// Between tissue and shaft in a direction, its gap the distance.
+  constraint::Row row(const Vec3& direction) const
+  {
+    auto made = constraint::Row::between({anchor, direction}, at.body,
+                                         needle::lever(at.shaft, on_shaft.s, direction));
+    made.gap = direction.dot(x - on_shaft.x);
+    return made;
+  }
+
+  const constraint::Anchor& anchor;
+  const Iterate& at;
+  Vec3 x;
+  needle::ShaftPoint on_shaft;
+};
+
+/// Two rows across the shaft. Returns the first.
+int add_lateral_rows(const Hold& hold, double softness, const Vec3& start, int point,
+                     constraint::Set& set)
+{
+  const int first = set.size();
+  for (int k : {0, 1}) {
+    constraint::Row row = hold.row(k == 0 ? hold.on_shaft.normal_1 : hold.on_shaft.normal_2);
+    row.softness = softness;
+    row.start = start[k];
+    set.add(std::move(row), law::Law::zero(), point);
+  }
+  return first;
+}
+
+/// Dashpot (softness, 0: none) and dry friction on one axial row each; `softness`: of the tissue
+/// next to the shaft.
+void add_friction_rows(double dashpot, constraint::Row row, double softness, PointRows& mine,
+                       constraint::Set& set)
+{
+  if (dashpot > 0.0) {
+    row.softness = dashpot;
+    mine.viscous = set.add(row, law::Law::zero(), mine.point);
+    row.softness = 0.0;
+  }
+  if (mine.bound > 0.0) mine.axial = set.add(row, law::Law::box(mine.bound), mine.point);
+  if (!(softness > 0.0)) return;
+  // Both laws push the same piece of shaft: its way through the tissue is that of their sum.
+  for (int row_of_law : {mine.viscous, mine.axial})
+    if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, softness});
+  if (mine.viscous >= 0 && mine.axial >= 0)
+    set.couplings().push_back({mine.viscous, mine.axial, softness});
+}
+
+PointRows add_point_rows(const Ground& ground, const PointOnPath& one, const Iterate& at,
+                         constraint::Set& set)
 {
   PointRows mine;
-  constraint::Row row;
-  const Site& site = path.sites[static_cast<std::size_t>(point.site)];
-  row.anchor = site.anchor;
-  row.body = body;
-  row.point = set.size();
-  const Vec3 p = tissue.position(row.anchor);
-  const needle::ShaftPoint on_shaft = needle::project(shaft, p);
-  const auto aim = [&](const Vec3& direction, double start) {
-    row.direction = direction;
-    row.gap = direction.dot(p - on_shaft.x);
-    row.lever = needle::lever(shaft, on_shaft.s, direction);
-    row.start = start;
-  };
-  if (lateral) {
-    row.softness = radius_softness(site, body, held).lateral;
-    mine.first = set.size();
-    aim(on_shaft.normal_1, point.lambda[0]);
-    set.add(row);
-    aim(on_shaft.normal_2, point.lambda[1]);
-    set.add(row);
+  mine.point = set.next_point();
+  const Hold hold(one.site.anchor, at);
+  if (one.lateral)
+    mine.first =
+        add_lateral_rows(hold, radius_softness(ground, one.site, at.body, one.held).lateral,
+                         one.point.lambda, mine.point, set);
+  constraint::Row row = hold.row(hold.on_shaft.tangent);
+  row.start = one.point.lambda[2];
+  row.gap = mine.slid = hold.on_shaft.s - one.point.needle_arc;
+  const double eta = ground.settings.eta;
+  if (eta > 0.0) {
+    row.relative_softness = (1.0 - eta) / eta;
+    mine.axial = set.add(std::move(row), law::Law::zero(), mine.point);
+    return mine;
   }
-  row.softness = 0.0;
-  aim(on_shaft.tangent, point.lambda[2]);
-  row.gap = mine.slid = on_shaft.s - point.needle_arc;
-  add_axial_rows(point, friction, h, radius_softness(site, body, length).axial, row, mine, set);
+  const Friction& friction = one.friction;
+  mine.bound = one.point.stuck ? friction.static_limit : friction.dynamic_limit;
+  const double softness = radius_softness(ground, one.site, at.body, one.length).axial;
+  add_friction_rows(friction.viscous > 0.0 ? at.h / friction.viscous : 0.0, std::move(row),
+                    softness, mine, set);
   return mine;
+}
+
+/// How far along its way from the first point a tip has passed the last place that may hold the
+/// needle: whole numbers of half edges, and below one its half, quarter, eighth.
+double passed_part(double way, double half)
+{
+  constexpr double least = 1.0 / 8.0;
+  const double halves = way / half + relative_tolerance;
+  if (halves >= 1.0) return half * std::floor(halves);
+  for (double part = 0.5; part >= least; part *= 0.5)
+    if (halves >= part) return half * part;
+  return 0.0;
 }
 
 /// A needle that one point alone holds could turn about it, until its tip meets the next place for
 /// one. Until then the last half edge that the tip has passed, or within the first one a part of
 /// it, holds it as well: a material place, that does not go along with the tip. Returns the first
 /// of two rows; -1: none is passed.
-int Insertion::add_lever_rows(const InsertionState& state, const needle::Shaft& shaft,
-                              const Deformed& tissue, int body, constraint::Set& set) const
+int add_lever_rows(const Ground& ground, const InsertionState& state, const Iterate& at,
+                   constraint::Set& set)
 {
   const Site& held = state.path.sites[static_cast<std::size_t>(state.points.front().site)];
-  const double half = 0.5 * local_edge(*mesh_, held.tet);
+  const double half = 0.5 * local_edge(ground.mesh, held.tet);
   const double passed = passed_part(state.tip_arc - held.arc, half);
   if (passed == 0.0) return -1;
-  const std::optional<Site> tip = site_at(state.path, *mesh_, held.arc + passed);
+  const std::optional<Site> tip = site_at(state.path, ground.mesh, held.arc + passed);
   if (!tip || tip->arc - held.arc < 0.5 * std::min(passed, half))
     return -1;  // the way is mostly through a void
-  const Vec3 p = tissue.position(tip->anchor);
-  const needle::ShaftPoint on_shaft = needle::project(shaft, p);
-  constraint::Row row;
-  row.anchor = tip->anchor;
-  row.body = body;
-  row.point = set.size();
-  row.softness = radius_softness(*tip, body, 0.5 * (tip->arc - held.arc)).lateral;
-  for (const Vec3& direction : {on_shaft.normal_1, on_shaft.normal_2}) {
-    row.direction = direction;
-    row.gap = direction.dot(p - on_shaft.x);
-    row.lever = needle::lever(shaft, on_shaft.s, direction);
-    set.add(row);
-  }
-  return set.size() - 2;
+  const double softness =
+      radius_softness(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral;
+  return add_lateral_rows(Hold(tip->anchor, at), softness, Vec3::Zero(), set.next_point(), set);
 }
 
-CouplingRows Insertion::add_rows(const InsertionState& state, const needle::Shaft& shaft,
-                                 const Deformed& tissue, int body, double h,
-                                 constraint::Set& set) const
+}  // namespace
+
+CouplingRows add_rows(const Ground& ground, const InsertionState& state, const Iterate& at,
+                      constraint::Set& set)
 {
   CouplingRows rows;
-  const core::MatX tributary = tributary_lengths(state);
-  const std::vector<bool> lateral = lateral_points(state);
-  double held = 0.0;  // of the path by the next point that holds the shaft laterally [m]
-  for (std::size_t k = 0; k < state.points.size(); ++k) {
-    const double own = tributary.row(static_cast<Eigen::Index>(k)).sum();
-    held += own;
-    rows.points.push_back(add_point_rows(state.points[k], lateral[k], state.path,
-                                         friction_of(state, tributary, k), own, held, shaft, tissue,
-                                         body, h, set));
-    if (lateral[k]) held = 0.0;
+  int lateral = 0;
+  for (const PointOnPath& one : points_on_path(ground, state)) {
+    rows.points.push_back(add_point_rows(ground, one, at, set));
+    lateral += one.lateral ? 1 : 0;
   }
-  if (std::count(lateral.begin(), lateral.end(), true) == 1)
-    rows.lever = add_lever_rows(state, shaft, tissue, body, set);
-  if (state.tip.pressed)
-    rows.tip = add_tip_rows(state.tip, state.phase == Phase::contact, resistance(state),
-                            settings_.tip.friction, shaft, tissue, body, set);
+  if (lateral == 1) rows.lever = add_lever_rows(ground, state, at, set);
+  if (state.tip.pressed) {
+    const TipLaw law{state.phase == Phase::contact, resistance(ground, state),
+                     ground.settings.tip.friction};
+    rows.tip = add_tip_rows(state.tip, law, at, set);
+  }
   return rows;
 }
 
-void Insertion::accept_point(CouplingPoint& point, const PointRows& rows,
-                             const law::Multipliers& multipliers, CouplingReport& report) const
+namespace {
+
+void accept_point(double tolerance, CouplingPoint& point, const PointRows& rows,
+                  const law::Multipliers& multipliers, CouplingReport& report)
 {
   point.lambda.setZero();
   if (rows.first >= 0) point.lambda.head<2>() = multipliers.lambda.segment<2>(rows.first);
@@ -229,21 +260,24 @@ void Insertion::accept_point(CouplingPoint& point, const PointRows& rows,
   const int axial = std::max(rows.axial, rows.viscous);  // both see the same slip
   // What nothing holds follows the shaft.
   const double slip = axial < 0 ? rows.slid : multipliers.delta[axial];
-  // Inside its box a point sticks, however loosely an unfinished iteration closed its gap.
+  // A point below its friction bound sticks, even if an unfinished iteration left a gap.
   const bool inside = rows.axial >= 0 && rows.bound > 0.0 &&
                       std::abs(multipliers.lambda[rows.axial]) < rows.bound * (1.0 - 1e-9);
-  point.stuck = inside || std::abs(slip) <= settings_.stick_tolerance;
+  point.stuck = inside || std::abs(slip) <= tolerance;
   if (!point.stuck) point.needle_arc += slip;
 }
 
-CouplingReport Insertion::accept(InsertionState& state, const CouplingRows& rows,
-                                 const law::Multipliers& multipliers) const
+}  // namespace
+
+CouplingReport accept(const Ground& ground, InsertionState& state, const CouplingRows& rows,
+                      const law::Multipliers& multipliers)
 {
+  const double tolerance = ground.settings.stick_tolerance;
   CouplingReport report;
   for (std::size_t k = 0; k < rows.points.size(); ++k)
-    accept_point(state.points[k], rows.points[k], multipliers, report);
+    accept_point(tolerance, state.points[k], rows.points[k], multipliers, report);
   if (rows.tip.axial < 0) return report;
-  report.tip = accept_tip(state.tip, rows.tip, multipliers, settings_.stick_tolerance);
+  report.tip = accept_tip(state.tip, rows.tip, multipliers, tolerance);
   report.tip_force = state.tip.lambda[2];
   report.tip_gap = multipliers.delta[rows.tip.axial];
   report.cutting_work = report.tip_force * report.tip_gap;

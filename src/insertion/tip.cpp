@@ -70,40 +70,31 @@ constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& loca
   return anchor;
 }
 
-TipRows add_tip_rows(const TipState& tip, bool on_surface, double limit, double friction,
-                     const needle::Shaft& shaft, const Deformed& tissue, int body,
+TipRows add_tip_rows(const TipState& tip, const TipLaw& law, const Iterate& at,
                      constraint::Set& set)
 {
   TipRows mine;
-  mine.limit = limit;
-  constraint::Row row;
-  row.anchor = tip.hold;
-  row.body = body;
-  row.point = set.size();
-  const needle::ShaftPoint end = needle::shaft_at(shaft, shaft.length);
-  const Vec3 apart = tissue.position(tip.hold) - tip.offset - end.x;
+  mine.limit = law.limit;
+  const needle::ShaftPoint end = needle::shaft_at(at.shaft, at.shaft.length);
+  const Vec3 apart = at.tissue.position(tip.hold) - tip.offset - end.x;
   const auto aim = [&](const Vec3& direction, double start) {
-    row.direction = direction;
+    auto row = constraint::Row::between({tip.hold, direction}, at.body,
+                                        needle::lever(at.shaft, at.shaft.length, direction));
     row.gap = direction.dot(apart);
-    row.lever = needle::lever(shaft, shaft.length, direction);
     row.start = start;
+    return row;
   };
   // On a surface the point touches, not yet the face behind it.
-  aim(end.tangent + (on_surface ? 0.0 : shaft.bevel) * end.normal_1, tip.lambda[2]);
-  row.kind = law::RowKind::push;
-  row.bound = limit;
-  mine.axial = set.size();
-  set.add(row);
-  if (!on_surface) return mine;
-  row.kind = law::RowKind::box;
-  row.normal = mine.axial;
-  row.friction = friction;
-  row.bound = 0.0;  // follows the axial force, from its start on
-  mine.lateral = set.size();
-  aim(end.normal_1, tip.lambda[0]);
-  set.add(row);
-  aim(end.normal_2, tip.lambda[1]);
-  set.add(row);
+  const Vec3 ahead = end.tangent + (law.on_surface ? 0.0 : at.shaft.bevel) * end.normal_1;
+  constraint::Row axial = aim(ahead, tip.lambda[2]);
+  if (!law.on_surface) {
+    mine.axial = set.add(std::move(axial), law::Law::interval(0.0, law.limit));
+    return mine;
+  }
+  mine.axial = set.add(
+      {std::move(axial), aim(end.normal_1, tip.lambda[0]), aim(end.normal_2, tip.lambda[1])},
+      law::Law::cone(law.friction, law.limit), set.next_point());
+  mine.lateral = mine.axial + 1;
   return mine;
 }
 

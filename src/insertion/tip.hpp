@@ -60,6 +60,25 @@ struct TipRows
 /// What came of the tip's rows.
 enum class TipOutcome { holds, yields, slides, apart };
 
+/// The iterate that rows of a needle are made at: deformed tissue and shaft. `body` is the needle's
+/// index among the small bodies, `h` the step length [s], 0 when no time passes: dashpots are then
+/// absent.
+struct Iterate
+{
+  const needle::Shaft& shaft;
+  const Deformed& tissue;
+  int body;
+  double h;
+};
+
+/// What a tip is held by.
+struct TipLaw
+{
+  bool on_surface;
+  double limit;     ///< axial force at which the tissue yields [N]
+  double friction;  ///< lateral over axial force on a surface
+};
+
 /// Reference place that carries a tip, the tet that holds it, and how far around it.
 struct Support
 {
@@ -75,10 +94,9 @@ struct Support
 constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& locator,
                                const Support& support, const core::Mat3& frame, bool disc);
 
-/// Rows of a pressed tip: axial push 0 <= λ <= limit on δ = m·(tissue - tip), with m the tangent
-/// plus the bevel's lateral part, and on a surface two lateral rows with Coulomb's bound.
-TipRows add_tip_rows(const TipState& tip, bool on_surface, double limit, double friction,
-                     const needle::Shaft& shaft, const Deformed& tissue, int body,
+/// A pressed tip's axial row: 0 <= λ <= limit on δ = m·(tissue - tip), m the tangent. Inside, m
+/// has the bevel's lateral part. On a surface two lateral rows add Coulomb's cone.
+TipRows add_tip_rows(const TipState& tip, const TipLaw& law, const Iterate& at,
                      constraint::Set& set);
 
 /// Takes the multipliers back into the tip. `tolerance` is the gap below which it touches [m].

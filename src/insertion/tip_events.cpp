@@ -1,9 +1,10 @@
+#include "insertion/tip_events.hpp"
+
 #include <algorithm>
 
-#include "insertion/insertion.hpp"
+#include "insertion/channel.hpp"
 #include "mesh/quadratic.hpp"
 
-// What the tip meets and what becomes of it: borders, pressing, sliding, cutting.
 namespace trocar::insertion {
 namespace {
 
@@ -43,64 +44,49 @@ core::Mat3 disc_frame(const Vec3& normal, const needle::ShaftPoint& end)
 
 }  // namespace
 
-/// Force it takes to go at X from one tet into another (-1: none) [N]: a membrane's threshold, and
-/// what is cut with a force is not entered without it.
-double Insertion::border(int from, int to, const Vec3& X) const
+void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X,
+                   const needle::Shaft& shaft)
 {
-  const auto cutting = [&](int tet) {
-    return tet < 0 ? 0.0
-                   : settings_.tip.cutting[static_cast<std::size_t>(
-                         mesh_->region[static_cast<std::size_t>(tet)])];
-  };
-  const double membrane = membranes_.threshold(from, to, X);
-  return cutting(from) > 0.0 ? membrane : std::max(membrane, cutting(to));
-}
-
-/// The tip stands on the surface at X, which is the path from now on.
-void Insertion::touch_surface(InsertionState& state, const Vec3& X,
-                              const needle::Shaft& shaft) const
-{
-  const int tet = locator_->tet_at(X);
-  const double edge = local_edge(*mesh_, tet);
-  const Vec3 normal = face_normal(*mesh_, tet, X);
+  const int tet = ground.locator.tet_at(X);
+  const double edge = local_edge(ground.mesh, tet);
+  const Vec3 normal = face_normal(ground.mesh, tet, X);
   const int first_id = state.path.first_id;
   state.path = {};
   state.path.first_id = first_id;
-  grow(state.path, X, *mesh_, *locator_, settings_.placement);
+  grow(state.path, X, ground.mesh, ground.locator, ground.settings.placement);
   state.phase = Phase::contact;
   state.tip.pressed = true;
   state.tip.wall = true;
-  state.tip.threshold = border(-1, tet, X);
+  state.tip.threshold = ground.border(-1, tet, X);
   state.tip.tet = tet;
-  state.tip.radius = std::max(settings_.tip.radius, edge);
-  state.tip.hold = tip_support(*mesh_, *locator_, {X, tet, state.tip.radius},
+  state.tip.radius = std::max(ground.settings.tip.radius, edge);
+  state.tip.hold = tip_support(ground.mesh, ground.locator, {X, tet, state.tip.radius},
                                disc_frame(normal, needle::shaft_at(shaft, shaft.length)), true);
 }
 
-/// Grows the path towards X, but not through a border that resists: there it ends, and that
-/// border's force is what the tip meets.
-void Insertion::grow_to(InsertionState& state, const Vec3& X) const
+void grow_to(const Ground& ground, InsertionState& state, const Vec3& X)
 {
   state.tip.threshold = 0.0;
   state.tip.wall = false;
-  if (!resists_) return grow(state.path, X, *mesh_, *locator_, settings_.placement);
+  if (!ground.resists)
+    return grow(state.path, X, ground.mesh, ground.locator, ground.settings.placement);
   const Path before = state.path;
-  grow(state.path, X, *mesh_, *locator_, settings_.placement);
+  grow(state.path, X, ground.mesh, ground.locator, ground.settings.placement);
   for (std::size_t i = std::max<std::size_t>(before.pieces.size(), 1); i < state.path.pieces.size();
        ++i) {
     const int from = state.path.pieces[i - 1].tet, to = state.path.pieces[i].tet;
     if (from == to) continue;
-    const double edge = local_edge(*mesh_, std::max(from, to));
+    const double edge = local_edge(ground.mesh, std::max(from, to));
     const double arc = state.path.pieces[i].begin;
     const double part = (arc - before.length()) / (X - before.vertex.back()).norm();
     const Vec3 place = before.vertex.back() + part * (X - before.vertex.back());
-    const double threshold = border(from, to, place);
+    const double threshold = ground.border(from, to, place);
     // Oblique to a membrane the path may weave through it: pierced is pierced, an edge around.
     const bool pierced = threshold == state.tip.pierced_force &&
-                         arc <= state.tip.pierced_arc + std::max(settings_.tip.radius, edge);
+                         arc <= state.tip.pierced_arc + std::max(ground.settings.tip.radius, edge);
     if (threshold <= 0.0 || pierced) continue;
     state.path = before;
-    grow(state.path, place, *mesh_, *locator_, settings_.placement);
+    grow(state.path, place, ground.mesh, ground.locator, ground.settings.placement);
     state.tip.threshold = threshold;
     state.tip.wall = from < 0 || to < 0;
     state.tip.tet = to >= 0 ? to : from;
@@ -108,44 +94,34 @@ void Insertion::grow_to(InsertionState& state, const Vec3& X) const
   }
 }
 
-/// Force at which the tissue at the end of the path yields [N]; 0: nothing resists.
-double Insertion::resistance(const InsertionState& state) const
+double resistance(const Ground& ground, const InsertionState& state)
 {
   if (state.tip.threshold > 0.0 || state.path.pieces.empty()) return state.tip.threshold;
-  const int tet = state.path.pieces.back().tet;
-  if (tet < 0) return 0.0;
-  return settings_.tip
-      .cutting[static_cast<std::size_t>(mesh_->region[static_cast<std::size_t>(tet)])];
+  return ground.cutting(state.path.pieces.back().tet);
 }
 
-/// A tip that comes to the end of its path where something resists is pressed from then on, until
-/// it comes apart. Its gap counts from that place.
-void Insertion::press(InsertionState& state, double arc, const needle::Shaft& shaft,
-                      const Deformed& tissue) const
+void press(const Ground& ground, InsertionState& state, double arc, const needle::Shaft& shaft,
+           const Deformed& tissue)
 {
   TipState& tip = state.tip;
   const bool was_pressed = tip.pressed;
   const int tet = tip.threshold > 0.0 ? tip.tet : last_tet(state.path);
   tip.pressed = false;
-  if (tet < 0 || resistance(state) <= 0.0) return;
-  const double tolerance = arc_tolerance(*mesh_, tet);
+  if (tet < 0 || resistance(ground, state) <= 0.0) return;
+  const double tolerance = arc_tolerance(ground.mesh, tet);
   tip.pressed = was_pressed || arc >= state.path.length() - tolerance;
   if (!tip.pressed || was_pressed) return;
   const Vec3& X = state.path.vertex.back();
   const needle::ShaftPoint end = needle::shaft_at(shaft, shaft.length);
-  tip.radius = std::max(settings_.tip.radius, local_edge(*mesh_, tet));
+  tip.radius = std::max(ground.settings.tip.radius, local_edge(ground.mesh, tet));
   tip.tet = tet;
-  tip.hold = tip_support(*mesh_, *locator_, {X, tet, tip.radius},
-                         tip.wall ? disc_frame(face_normal(*mesh_, tet, X), end) : frame_of(end),
-                         tip.wall);
+  tip.hold = tip_support(
+      ground.mesh, ground.locator, {X, tet, tip.radius},
+      tip.wall ? disc_frame(face_normal(ground.mesh, tet, X), end) : frame_of(end), tip.wall);
   tip.offset = tissue.position(tip.hold) - tissue.place(X, tet);
 }
 
-/// How far along the shaft the place a pressed tip stands on lies ahead of where it would close the
-/// gap: under load the place yields more than the mean of the support, by which the gap is
-/// measured.
-Vec3 Insertion::lead(const InsertionState& state, const needle::Shaft& shaft,
-                     const Deformed& tissue) const
+Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue)
 {
   if (!state.tip.pressed) return Vec3::Zero();
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
@@ -154,12 +130,23 @@ Vec3 Insertion::lead(const InsertionState& state, const needle::Shaft& shaft,
   return tangent * tangent.dot(place - closed);
 }
 
+namespace {
+
+void leave_surface(InsertionState& state)
+{
+  const int first_id = state.path.first_id;
+  state.path = {};
+  state.path.first_id = first_id;
+  state.phase = Phase::outside;
+  state.tip.pressed = false;
+}
+
 /// The tip, pressed on a surface, stands on it where its axis meets it now; beside the body there
 /// is none, and the tip has left. True when it stands.
-bool Insertion::stand(InsertionState& state, const needle::Shaft& shaft,
-                      const Deformed& tissue) const
+bool stand(const Ground& ground, InsertionState& state, const needle::Shaft& shaft,
+           const Deformed& tissue)
 {
-  const double edge = local_edge(*mesh_, state.tip.tet);
+  const double edge = local_edge(ground.mesh, state.tip.tet);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
   const Vec3 ahead = shaft.tip() + lead(state, shaft, tissue) + edge * tangent;
   const Vec3 stood = state.path.vertex.back();
@@ -169,51 +156,33 @@ bool Insertion::stand(InsertionState& state, const needle::Shaft& shaft,
         return (a.X - stood).squaredNorm() < (b.X - stood).squaredNorm();
       });
   const bool there = nearest != entries.end();
-  if (there && locator_->tet_at(nearest->X) >= 0) touch_surface(state, nearest->X, shaft);
+  if (there && ground.locator.tet_at(nearest->X) >= 0)
+    touch_surface(ground, state, nearest->X, shaft);
   if (!there || state.tip.threshold <= 0.0) leave_surface(state);
   return state.tip.pressed;
 }
 
-void Insertion::leave_surface(InsertionState& state) const
+/// The reference place of a tip at the end of its path.
+Vec3 reference_of(const Vec3& tip, const InsertionState& state, const Deformed& tissue)
 {
-  const int first_id = state.path.first_id;
-  state.path = {};
-  state.path.first_id = first_id;
-  state.phase = Phase::outside;
-  state.tip.pressed = false;
+  const auto inside = tissue.reference_place(tip, state.path.vertex.back());
+  return inside ? *inside : tissue.reference_place_continued(tip, state.tip.tet);
 }
 
-void Insertion::settle(InsertionState& state, const CouplingReport& report,
-                       const needle::Shaft& shaft, const Deformed& tissue) const
+/// The tissue has yielded: what the tip stood at is pierced, and the channel goes on to it.
+void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
+              const needle::Shaft& shaft, const Deformed& tissue)
 {
-  if (report.tip == TipOutcome::holds) return;
-  const bool on_surface = state.phase == Phase::contact;
+  const Vec3 X = reference_of(tip, state, tissue);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
-  if (on_surface && report.tip == TipOutcome::apart) return leave_surface(state);
-  if (on_surface && !stand(state, shaft, tissue)) return;
-  if (report.tip == TipOutcome::slides) {
-    state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
-    return;
-  }
-  // On a surface the channel begins where the axis meets it; else it ends where the tip is.
-  Vec3 tip = shaft.tip() + lead(state, shaft, tissue);
-  if (on_surface)
-    tip = tissue.place(state.path.vertex.back(), state.tip.tet) - report.tip_gap * tangent;
-  const auto inside = tissue.reference_place(tip, state.path.vertex.back());
-  const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, state.tip.tet);
-  state.tip.pressed = false;
-  if (report.tip == TipOutcome::apart) {
-    state.tip_arc = std::clamp(arc_nearest(state.path, X), 0.0, state.path.length());
-    return;
-  }
   if (state.tip.threshold > 0.0) {
     ++state.tip.punctures;
     state.tip.pierced_arc = state.path.length();
     state.tip.pierced_force = state.tip.threshold;
   }
-  grow_to(state, X);
+  grow_to(ground, state, X);
   state.phase = Phase::inserted;
-  press(state, state.path.length(), shaft, tissue);
+  press(ground, state, state.path.length(), shaft, tissue);
   // Where the tissue gave way to the tip it is closed on it, in the bevel's direction as well. A
   // border on its way the tip is beyond by the rest of its advance: to that the next step opens.
   if (state.tip.pressed) {
@@ -224,13 +193,37 @@ void Insertion::settle(InsertionState& state, const CouplingReport& report,
   }
   state.tip_arc = state.path.length();
   const std::size_t known = state.points.size();
-  add_points_behind(state, state.path.length(), shaft.length);
+  add_points_behind(ground.mesh, state, state.path.length(), shaft.length);
   // The step is over: new points stand where they are on the shaft, which under load is a little
   // ahead of where the path says.
   for (std::size_t k = known; k < state.points.size(); ++k) {
     const Site& site = state.path.sites[static_cast<std::size_t>(state.points[k].site)];
     state.points[k].needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
   }
+}
+
+}  // namespace
+
+void settle_tip(const Ground& ground, InsertionState& state, const CouplingReport& report,
+                const needle::Shaft& shaft, const Deformed& tissue)
+{
+  if (report.tip == TipOutcome::holds) return;
+  const bool on_surface = state.phase == Phase::contact;
+  const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
+  if (on_surface && report.tip == TipOutcome::apart) return leave_surface(state);
+  if (on_surface && !stand(ground, state, shaft, tissue)) return;
+  if (report.tip == TipOutcome::slides) {
+    state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
+    return;
+  }
+  // On a surface the channel begins where the axis meets it; else it ends where the tip is.
+  Vec3 tip = shaft.tip() + lead(state, shaft, tissue);
+  if (on_surface)
+    tip = tissue.place(state.path.vertex.back(), state.tip.tet) - report.tip_gap * tangent;
+  state.tip.pressed = false;
+  if (report.tip == TipOutcome::yields) return go_ahead(ground, state, tip, shaft, tissue);
+  const double arc = arc_nearest(state.path, reference_of(tip, state, tissue));
+  state.tip_arc = std::clamp(arc, 0.0, state.path.length());
 }
 
 }  // namespace trocar::insertion

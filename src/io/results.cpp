@@ -59,8 +59,10 @@ Results::~Results()
 
 void Results::add_series(base::H5File& file) const
 {
-  for (const Series& one : series_)
+  for (const Series& one : series_) {
     file.create_series("/history/" + one.name, one.columns, room_, one.units);
+    if (!one.old_name.empty()) file.link("/history/" + one.name, "/history/" + one.old_name);
+  }
 }
 
 /// Puts the file where run.h5 is and opens it for what is added byte by byte.

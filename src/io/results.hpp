@@ -21,6 +21,7 @@ struct Series
   std::string name;
   std::size_t columns;
   std::string units;
+  std::string old_name{};  ///< that a link keeps for readers of older files; "" without one
 };
 
 /// One dataset of a field file. `nodal` fields are shown by ParaView through run.xdmf.

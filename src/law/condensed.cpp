@@ -15,9 +15,20 @@ constexpr double near_bound = 0.8;  ///< a start beyond this part of its bound c
 RowSplit split_rows(const Problem& problem)
 {
   RowSplit rows;
-  for (int i = 0; i < static_cast<int>(problem.rows()); ++i)
-    (problem.kind[static_cast<std::size_t>(i)] == RowKind::box ? rows.box : rows.bilateral)
-        .push_back(i);
+  std::vector<double> F;
+  for (const Block& block : problem.blocks) {
+    if (block.law.set == Law::Set::zero) {
+      rows.bilateral.push_back(block.first);
+      continue;
+    }
+    if (block.law.set == Law::Set::disc)
+      rows.bounds.pairs.push_back(static_cast<int>(rows.box.size()));
+    for (int row = block.first; row < block.end(); ++row) {
+      rows.box.push_back(row);
+      F.push_back(block.law.upper);
+    }
+  }
+  rows.bounds.F = Eigen::Map<const VecX>(F.data(), static_cast<Eigen::Index>(F.size()));
   return rows;
 }
 
@@ -35,13 +46,17 @@ Condensed::Condensed(const Problem& problem)
     : problem_(&problem),
       rows_(split_rows(problem)),
       W_bb_(problem.W(rows_.bilateral, rows_.bilateral)),
-      bound_(problem.bound(rows_.box)),
       start_(problem.start(rows_.box))
 {
   for (int row : W_bb_.kept()) kept_.push_back(rows_.bilateral[static_cast<std::size_t>(row)]);
-  for (Eigen::Index i = 0; i < start_.size(); ++i)
-    if (std::abs(start_[i]) >= near_bound * bound_[i])
-      start_[i] = std::copysign(bound_[i], start_[i]);
+  const VecX& F = bounds().F;
+  for (int i = 0; i < static_cast<int>(start_.size()); ++i)
+    if (!bounds().of_pair(i) && std::abs(start_[i]) >= near_bound * F[i])
+      start_[i] = std::copysign(F[i], start_[i]);
+  for (int i : bounds().pairs) {
+    const double length = start_.segment<2>(i).norm();
+    if (length > 0.0 && length >= near_bound * F[i]) start_.segment<2>(i) *= F[i] / length;
+  }
 }
 
 bool Condensed::bilateral_redundant() const
@@ -80,14 +95,15 @@ int Condensed::box_rank()
 
 std::optional<VecX> Condensed::all_slipping() const
 {
-  const auto at_bound = (start_.cwiseAbs().array() >= bound_.array()).count();
-  if (2 * at_bound < start_.size()) return std::nullopt;
+  const VecX& F = bounds().F;
+  const auto at_bound = (start_.cwiseAbs().array() >= F.array()).count();
+  if (2 * at_bound < start_.size() || !bounds().pairs.empty()) return std::nullopt;
   VecX lambda_f = start_, delta;
   for (int attempt = 0; attempt < 2; ++attempt) {
     with_kept_rows(lambda_f, delta);
     bool settled = true;
     for (Eigen::Index i = 0; i < lambda_f.size(); ++i) {
-      const double slip = -std::copysign(bound_[i], delta[rows_.box[static_cast<std::size_t>(i)]]);
+      const double slip = -std::copysign(F[i], delta[rows_.box[static_cast<std::size_t>(i)]]);
       settled = settled && slip == lambda_f[i];
       lambda_f[i] = slip;
     }

@@ -3,14 +3,16 @@
 #include <optional>
 #include <vector>
 
+#include "law/box_qp.hpp"
 #include "law/pivoted_cholesky.hpp"
-#include "law/problem.hpp"
 
 namespace trocar::law {
 
+/// Rows of the law `zero`, and those with bounds: boxes |λ| <= F and discs.
 struct RowSplit
 {
   std::vector<int> bilateral, box;
+  Bounds bounds;  ///< of the box rows
 };
 RowSplit split_rows(const Problem& problem);
 
@@ -28,9 +30,9 @@ class Condensed
   /// Factors W_bb. S is made when it is first asked for: where every point slips nobody does.
   explicit Condensed(const Problem& problem);
 
-  const MatX& S();                              ///< [m/N]
-  const VecX& s();                              ///< [m]
-  const VecX& bound() const { return bound_; }  ///< [N]
+  const MatX& S();  ///< [m/N]
+  const VecX& s();  ///< [m]
+  const Bounds& bounds() const { return rows_.bounds; }
   /// Box multipliers to start from: the problem's own, those near a bound put on it, because a
   /// slipping point's bound may grow from step to step [N].
   const VecX& start() const { return start_; }
@@ -58,7 +60,7 @@ class Condensed
   PivotedCholesky W_bb_;
   std::vector<int> kept_;  ///< bilateral rows of full rank
   MatX S_;                 ///< empty until asked for
-  VecX s_, bound_, start_;
+  VecX s_, start_;
 };
 
 }  // namespace trocar::law

@@ -80,29 +80,30 @@ bool FluidLaw::mixes_with(const FluidLaw& other) const
   return kind == other.kind && bulk_modulus == other.bulk_modulus && ambient == other.ambient;
 }
 
-Flows network_flows(const std::vector<Edge>& edges, const VecX& p)
+Flows network_flows(const std::vector<Conduit>& conduits, const VecX& p)
 {
-  Flows flows{VecX::Zero(static_cast<Eigen::Index>(edges.size())), VecX::Zero(p.size()),
+  Flows flows{VecX::Zero(static_cast<Eigen::Index>(conduits.size())), VecX::Zero(p.size()),
               MatX::Zero(p.size(), p.size())};
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const Edge& edge = edges[e];
-    const double drop = (edge.from >= 0 ? p[edge.from] : 0.0) - (edge.to >= 0 ? p[edge.to] : 0.0);
-    const double conductance = edge.valve && drop <= 0.0 ? 0.0 : edge.conductance;
-    const double flow = conductance * drop + edge.flow;
-    flows.edge[static_cast<Eigen::Index>(e)] = flow;
-    const double density = flow >= 0.0 ? edge.density_from : edge.density_to;
+  for (std::size_t e = 0; e < conduits.size(); ++e) {
+    const Conduit& conduit = conduits[e];
+    const double drop =
+        (conduit.from >= 0 ? p[conduit.from] : 0.0) - (conduit.to >= 0 ? p[conduit.to] : 0.0);
+    const double conductance = conduit.valve && drop <= 0.0 ? 0.0 : conduit.conductance;
+    const double flow = conductance * drop + conduit.flow;
+    flows.conduit[static_cast<Eigen::Index>(e)] = flow;
+    const double density = flow >= 0.0 ? conduit.density_from : conduit.density_to;
     const double amount = density * flow, by_drop = density * conductance;
-    if (edge.from >= 0) {
-      flows.inflow[edge.from] -= amount;
-      flows.conductance(edge.from, edge.from) += by_drop;
+    if (conduit.from >= 0) {
+      flows.inflow[conduit.from] -= amount;
+      flows.conductance(conduit.from, conduit.from) += by_drop;
     }
-    if (edge.to >= 0) {
-      flows.inflow[edge.to] += amount;
-      flows.conductance(edge.to, edge.to) += by_drop;
+    if (conduit.to >= 0) {
+      flows.inflow[conduit.to] += amount;
+      flows.conductance(conduit.to, conduit.to) += by_drop;
     }
-    if (edge.from >= 0 && edge.to >= 0) {
-      flows.conductance(edge.from, edge.to) -= by_drop;
-      flows.conductance(edge.to, edge.from) -= by_drop;
+    if (conduit.from >= 0 && conduit.to >= 0) {
+      flows.conductance(conduit.from, conduit.to) -= by_drop;
+      flows.conductance(conduit.to, conduit.from) -= by_drop;
     }
   }
   return flows;

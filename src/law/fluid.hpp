@@ -62,7 +62,7 @@ struct FluidLaw
 
 /// A way for fluid between two cavities, or one and outside (-1, where the pressure is 0). It moves
 /// amount: the flow at the pressure it comes from times the density there.
-struct Edge
+struct Conduit
 {
   int from = -1, to = -1;
   double conductance = 0.0;                     ///< 1/R [m³/(s Pa)]; 0: closed
@@ -74,11 +74,11 @@ struct Edge
 /// What a network does at cavity pressures p.
 struct Flows
 {
-  VecX edge;         ///< flow from `from` to `to`, at the pressure it comes from (edges) [m³/s]
+  VecX conduit;      ///< flow from `from` to `to`, at the pressure it comes from (conduits) [m³/s]
   VecX inflow;       ///< of amount into every cavity, at p = 0 [m³/s]
   MatX conductance;  ///< -∂inflow/∂p with the densities held, symmetric positive semidefinite
                      ///< [m³/(s Pa)]
 };
-Flows network_flows(const std::vector<Edge>& edges, const VecX& p);
+Flows network_flows(const std::vector<Conduit>& conduits, const VecX& p);
 
 }  // namespace trocar::law

@@ -13,27 +13,41 @@
 namespace trocar::law {
 namespace {
 
-/// Rows first .. end-1 form one coupling point.
+/// Rows first .. end-1 form one coupling point, and the discs among them by their first rows.
 struct Group
 {
   Eigen::Index first, end;
+  std::vector<int> boxes, discs;
 };
 
 std::vector<Group> groups_of(const Problem& problem)
 {
   std::vector<Group> groups;
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (i == 0 || problem.group[at] != problem.group[at - 1]) groups.push_back({i, i});
-    groups.back().end = i + 1;
+  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+    const Block& block = problem.blocks[b];
+    if (b == 0 || block.point != problem.blocks[b - 1].point)
+      groups.push_back({block.first, block.first, {}, {}});
+    Group& group = groups.back();
+    const auto row = block.first - static_cast<int>(group.first);
+    if (block.law.set == Law::Set::interval) group.boxes.push_back(row);
+    if (block.law.set == Law::Set::disc) group.discs.push_back(row);
+    group.end = block.end();
   }
   return groups;
 }
 
+/// The step of a disc towards its law: a gradient's, so short that it cannot overshoot.
+Eigen::Vector2d on_disc(const Eigen::Vector2d& lambda, const Eigen::Vector2d& delta, double w,
+                        double radius)
+{
+  if (!(w > 0.0)) return lambda;
+  return project(Law::disc(radius), Few(lambda - delta / w));
+}
+
 /// Multipliers of one group that satisfy its laws with every other row held. `residual` is δ of
-/// its rows. A group holds at most one box row: solve all rows as bilateral; when that one leaves
-/// its box, put it on the bound and solve the rest again.
-VecX solve_group(const Problem& problem, const Group& group, const VecX& lambda,
+/// its rows, `F` their bounds. All rows but discs are solved as bilateral; a box row that leaves
+/// its box is put on the bound and the rest solved again. Discs follow, one after the other.
+VecX solve_group(const Problem& problem, const Group& group, const VecX& F, const VecX& lambda,
                  const VecX& residual)
 {
   const Eigen::Index n = group.end - group.first;
@@ -43,24 +57,38 @@ VecX solve_group(const Problem& problem, const Group& group, const VecX& lambda,
   VecX next = VecX::Zero(n);
   for (int i = 0; i < n; ++i)
     if (W(i, i) > 0.0) free.push_back(i);
+  for (int disc : group.discs) {
+    std::erase_if(free, [disc](int i) { return i == disc || i == disc + 1; });
+    next.segment<2>(disc) = lambda.segment<2>(disc);
+  }
   const auto solve_free = [&] {
     if (free.empty()) return;
+    next(free).setZero();
     const VecX rhs = -(held + W * next)(free);
     next(free) = core::least_squares(W(free, free), rhs);
   };
   solve_free();
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Index row = group.first + i;
-    if (problem.kind[static_cast<std::size_t>(row)] != RowKind::box) continue;
-    const double F = problem.bound[row];
-    if (std::abs(next[i]) <= F) continue;
-    const double clamped = std::clamp(next[i], -F, F);
-    free.erase(std::remove(free.begin(), free.end(), i), free.end());
-    next.setZero();
-    next[i] = clamped;
+  for (int i : group.boxes) {
+    if (std::abs(next[i]) <= F[i]) continue;
+    next[i] = std::clamp(next[i], -F[i], F[i]);
+    std::erase(free, i);
     solve_free();
   }
+  for (int disc : group.discs) {
+    const Eigen::Vector2d delta = (held + W * next).segment<2>(disc);
+    const double w = W(disc, disc) + W(disc + 1, disc + 1);
+    next.segment<2>(disc) = on_disc(next.segment<2>(disc), delta, w, F[disc]);
+  }
   return next;
+}
+
+/// Bounds of all rows [N]; infinite on those of the law zero.
+VecX bounds_of(const Problem& problem)
+{
+  VecX F(problem.rows());
+  for (const Block& block : problem.blocks)
+    F.segment(block.first, block.law.rows()).setConstant(block.law.upper);
+  return F;
 }
 
 bool stop(const Problem& problem, const Settings& settings, double step, Multipliers& result)
@@ -88,6 +116,7 @@ Multipliers solve_pgs(const Problem& problem, const Settings& settings)
   Multipliers result;
   result.lambda = problem.start;
   const std::vector<Group> groups = groups_of(problem);
+  const VecX F = bounds_of(problem);
   const core::Stopwatch watch;
   VecX delta = problem.W * result.lambda + problem.g;
   while (!result.converged && result.iterations < settings.max_iterations) {
@@ -96,7 +125,9 @@ Multipliers solve_pgs(const Problem& problem, const Settings& settings)
     for (const Group& group : groups) {
       const Eigen::Index n = group.end - group.first;
       const VecX old = result.lambda.segment(group.first, n);
-      const VecX change = solve_group(problem, group, old, delta.segment(group.first, n)) - old;
+      const VecX change = solve_group(problem, group, F.segment(group.first, n), old,
+                                      delta.segment(group.first, n)) -
+                          old;
       delta += problem.W.middleCols(group.first, n) * change;
       result.lambda.segment(group.first, n) += change;
       step += problem.W.diagonal().segment(group.first, n).cwiseProduct(change).cwiseAbs().sum();
@@ -107,6 +138,31 @@ Multipliers solve_pgs(const Problem& problem, const Settings& settings)
   finish(problem, settings, "pgs", result);
   return result;
 }
+
+namespace {
+
+/// One sweep over the friction rows, each with all others held. Returns the step's norm [m].
+double sweep(const MatX& W, const Bounds& bounds, VecX& delta, VecX& lambda)
+{
+  double step = 0.0;
+  for (int i = 0; i < static_cast<int>(lambda.size()); ++i) {
+    const bool pair = bounds.of_pair(i);
+    const int n = pair ? 2 : 1;
+    const double w = pair ? W(i, i) + W(i + 1, i + 1) : W(i, i);
+    if (w > 0.0) {
+      const Law law = pair ? Law::disc(bounds.F[i]) : Law::box(bounds.F[i]);
+      const VecX change =
+          project(law, lambda.segment(i, n) - delta.segment(i, n) / w) - Few(lambda.segment(i, n));
+      lambda.segment(i, n) += change;
+      delta += W.middleCols(i, n) * change;
+      step += w * change.cwiseAbs().sum();
+    }
+    i += n - 1;
+  }
+  return step;
+}
+
+}  // namespace
 
 Multipliers solve_hybrid(const Problem& problem, const Settings& settings)
 {
@@ -120,7 +176,6 @@ Multipliers solve_hybrid(const Problem& problem, const Settings& settings)
   const MatX W_fb = problem.W(rows.box, rows.bilateral);
   const MatX W_ff = problem.W(rows.box, rows.box);
   const VecX g_b = problem.g(rows.bilateral), g_f = problem.g(rows.box);
-  const VecX bound = problem.bound(rows.box);
   const VecX w_b = problem.W.diagonal()(rows.bilateral);
   VecX lambda_b = result.lambda(rows.bilateral), lambda_f = result.lambda(rows.box);
   while (!result.converged && result.iterations < settings.max_iterations) {
@@ -129,14 +184,7 @@ Multipliers solve_hybrid(const Problem& problem, const Settings& settings)
     double step = w_b.cwiseProduct(next_b - lambda_b).cwiseAbs().sum();
     lambda_b = next_b;
     VecX delta = g_f + W_fb * lambda_b + W_ff * lambda_f;
-    for (Eigen::Index i = 0; i < lambda_f.size(); ++i) {
-      if (W_ff(i, i) <= 0.0) continue;
-      const double next = std::clamp(lambda_f[i] - delta[i] / W_ff(i, i), -bound[i], bound[i]);
-      const double change = next - lambda_f[i];
-      lambda_f[i] = next;
-      delta += W_ff.col(i) * change;
-      step += std::abs(W_ff(i, i) * change);
-    }
+    step += sweep(W_ff, rows.bounds, delta, lambda_f);
     result.lambda(rows.bilateral) = lambda_b;
     result.lambda(rows.box) = lambda_f;
     result.converged = stop(problem, settings, step, result);

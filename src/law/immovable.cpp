@@ -17,34 +17,30 @@ VecX mobility(const Problem& problem)
 }
 
 // Rows that nothing can move, W_ii = 0: their gap is what it is, and no other row feels their
-// multiplier. Where the gap opens, λ is at the end of its interval on that side; where it does
-// not, between two bodies at rest, λ may be anything within and stays what it was. A bilateral
-// row with a gap, or a push without limit, has no answer.
+// multiplier. Where the gap opens, λ is at the end of its set on that side; where it does not,
+// between two bodies at rest, λ may be anything within and stays what it was. A row without such
+// an end, of the law zero or a push without limit, has no answer to a gap.
 void settle_immovable(const Problem& problem, const VecX& w, double tolerance, Multipliers& result)
 {
   constexpr double no_gap = 1e-12;  // [m], of places that are known to a part in 1e14
   const double closed = std::max(tolerance, no_gap);
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    if (w[i] > 0.0) continue;
-    const RowKind kind = problem.kind[static_cast<std::size_t>(i)];
-    const double gap = problem.g[i], F = problem.bound[i];
-    const bool opens = std::abs(gap) > closed;
-    const bool unlimited = kind == RowKind::bilateral || (gap < 0.0 && !std::isfinite(F));
-    double& lambda = result.lambda[i];
-    if (kind == RowKind::bilateral)
-      lambda = problem.start[i];
-    else if (!opens)
-      lambda = std::clamp(problem.start[i], kind == RowKind::push ? 0.0 : -F, F);
-    else if (gap > 0.0)
-      lambda = kind == RowKind::push ? 0.0 : -F;
-    else if (std::isfinite(F))
-      lambda = F;
-    if (!opens || !unlimited) continue;
-    result.residual = std::max(result.residual, std::abs(gap));
+  for (const Block& block : problem.blocks) {
+    const int n = block.law.rows();
+    if (w.segment(block.first, n).maxCoeff() > 0.0) continue;
+    const Few gap = problem.g.segment(block.first, n),
+              start = problem.start.segment(block.first, n);
+    const bool opens = gap.norm() > closed;
+    const Few end = resisting(block.law, gap);
+    if (!opens)
+      result.lambda.segment(block.first, n) = project(block.law, start);
+    else
+      result.lambda.segment(block.first, n) = end.allFinite() ? end : start;
+    if (!opens || end.allFinite()) continue;
+    result.residual = std::max(result.residual, gap.norm());
     if (!result.converged) continue;
     result.converged = false;
-    result.immovable = static_cast<int>(i);
-    result.why = "a gap of " + core::shown(std::abs(gap)) + " m can be closed by nothing";
+    result.immovable = block.first;
+    result.why = "a gap of " + core::shown(gap.norm()) + " m can be closed by nothing";
   }
 }
 

@@ -8,8 +8,9 @@ namespace trocar::law {
 /// prescribed, its gap is what it is.
 VecX mobility(const Problem& problem);
 
-/// Gives rows without mobility the multipliers that their gaps ask for, and says in `result` where
-/// a gap breaks the law of such a row. `tolerance`: of gaps [m].
+/// Gives blocks without mobility the multipliers that their gaps ask for, and says in `result`
+/// where a gap breaks the law of such a block. No set follows a multiplier here. `tolerance`: of
+/// gaps [m].
 void settle_immovable(const Problem& problem, const VecX& w, double tolerance, Multipliers& result);
 
 }  // namespace trocar::law

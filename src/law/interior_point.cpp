@@ -1,16 +1,70 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/dense.hpp"
-#include "law/box_qp.hpp"
+#include "law/inequalities.hpp"
 
 namespace trocar::law {
 namespace {
 
-/// Point and direction: x, distances to the bounds u = x + F and v = F - x, their multipliers.
+/// Point and direction: x, the values of single rows' inequalities and their multipliers, the
+/// multipliers of cones.
 struct Point
 {
-  VecX x, u, v, y, z;
+  VecX x, c, z;
+  std::vector<Vec3> cones;
+};
+
+/// What the products c∘z are led to, of single rows and of cones.
+struct Target
+{
+  VecX single;
+  std::vector<Vec3> cones;
+};
+
+/// Newton's directions at a point, with one factor.
+class Newton
+{
+ public:
+  Newton(const Inequalities& in, const MatX& S, const VecX& s, const Point& at) : in_(in), at_(at)
+  {
+    for (std::size_t k = 0; k < in.pairs(); ++k)
+      scaling_.emplace_back(in.cone(k, at.x), at.cones[k]);
+    dual_ = -(S * at.x + s);
+    in.add_pull(at.z, at.cones, dual_);
+    factor_.compute(in.barrier(S, at.z.cwiseQuotient(at.c), scaling_));
+  }
+  bool regular() const { return factor_.regular(); }
+  const cone::Scaling& scaling(std::size_t k) const { return scaling_[k]; }
+
+  Point towards(const Target& target) const
+  {
+    Point d;
+    const VecX to_z = target.single.cwiseQuotient(at_.c) - at_.z;
+    std::vector<Vec3> to_cones;
+    for (std::size_t k = 0; k < in_.pairs(); ++k) {
+      const Vec3& lambda = scaling_[k].lambda;
+      to_cones.push_back(scaling_[k].inverse * (cone::divided(target.cones[k], lambda) - lambda));
+    }
+    VecX rhs = dual_;
+    in_.add_pull(to_z, to_cones, rhs);
+    d.x = factor_.solve(rhs);
+    d.c = in_.change(d.x);
+    d.z = to_z - at_.z.cwiseQuotient(at_.c).cwiseProduct(d.c);
+    for (std::size_t k = 0; k < in_.pairs(); ++k) {
+      const Vec3 du = in_.cone_change(k, d.x);
+      d.cones.push_back(to_cones[k] - scaling_[k].inverse * (scaling_[k].inverse * du));
+    }
+    return d;
+  }
+
+ private:
+  const Inequalities& in_;
+  const Point& at_;
+  std::vector<cone::Scaling> scaling_;
+  VecX dual_;  ///< -(S x + s - what the multipliers push with)
+  core::Cholesky factor_;
 };
 
 double longest_step(const VecX& value, const VecX& change, double longest)
@@ -20,49 +74,39 @@ double longest_step(const VecX& value, const VecX& change, double longest)
   return longest;
 }
 
-double longest_step(const Point& p, const Point& d)
+double longest_step(const Inequalities& in, const Point& p, const Point& d)
 {
-  double step = longest_step(p.u, d.u, 1.0);
-  step = longest_step(p.v, d.v, step);
-  step = longest_step(p.y, d.y, step);
-  return longest_step(p.z, d.z, step);
+  double step = longest_step(p.z, d.z, longest_step(p.c, d.c, 1.0));
+  for (std::size_t k = 0; k < in.pairs(); ++k) {
+    const Vec3 du = in.cone_change(k, d.x);
+    step = std::min(step, 0.995 * cone::step_to_border(in.cone(k, p.x), du));
+    step = std::min(step, 0.995 * cone::step_to_border(p.cones[k], d.cones[k]));
+  }
+  return step;
 }
 
-double complementarity(const Point& p)
+double complementarity(const Inequalities& in, const Point& p)
 {
-  return (p.u.dot(p.y) + p.v.dot(p.z)) / (2.0 * static_cast<double>(p.x.size()));
+  double sum = p.c.dot(p.z);
+  for (std::size_t k = 0; k < in.pairs(); ++k) sum += in.cone(k, p.x).dot(p.cones[k]);
+  return sum / static_cast<double>(p.c.size() + static_cast<Eigen::Index>(in.pairs()));
 }
 
-/// Newton direction towards u∘y = target_u, v∘z = target_v; `dual` = S x + s - y + z.
-Point direction(const core::Cholesky& factor, const Point& p, const VecX& dual,
-                const VecX& target_u, const VecX& target_v)
+/// The least of the products, each as if it were in balance with itself.
+double least_product(const Inequalities& in, const Point& p)
 {
-  Point d;
-  const VecX to_y = target_u.cwiseQuotient(p.u) - p.y;
-  const VecX to_z = target_v.cwiseQuotient(p.v) - p.z;
-  d.x = factor.solve(VecX(-dual + to_y - to_z));
-  d.u = d.x;
-  d.v = -d.x;
-  d.y = to_y - p.y.cwiseQuotient(p.u).cwiseProduct(d.x);
-  d.z = to_z + p.z.cwiseQuotient(p.v).cwiseProduct(d.x);
-  return d;
+  double least = p.c.size() > 0 ? p.c.cwiseProduct(p.z).minCoeff() : 1e300;
+  for (std::size_t k = 0; k < in.pairs(); ++k)
+    least = std::min(least, cone::root(in.cone(k, p.x)) * cone::root(p.cones[k]));
+  return least;
 }
 
 void move(Point& p, const Point& d, double step)
 {
   p.x += step * d.x;
-  p.u += step * d.u;
-  p.v += step * d.v;
-  p.y += step * d.y;
+  p.c += step * d.c;
   p.z += step * d.z;
-}
-
-/// S with the curvature of both barriers.
-MatX barrier(const MatX& S, const Point& p)
-{
-  MatX shifted = S;
-  shifted.diagonal() += p.y.cwiseQuotient(p.u) + p.z.cwiseQuotient(p.v);
-  return shifted;
+  for (std::size_t k = 0; k < p.cones.size(); ++k) p.cones[k] += step * d.cones[k];
 }
 
 /// What the products of a trial point lack to be neither much smaller nor much larger than they
@@ -75,29 +119,33 @@ VecX short_of(const VecX& products, double centre)
 }
 
 /// Mehrotra: how far the affine step gets says how much to centre, and what it leaves is corrected.
-/// Gondzio (1996): with the same factor it is then corrected again for products that run away over
-/// a longer step, as long as that lengthens it.
-Point corrected_direction(const core::Cholesky& factor, const Point& p, const VecX& dual)
+/// Gondzio (1996): with the same factor it is then corrected again for products of single rows that
+/// run away over a longer step, as long as that lengthens it.
+Point corrected_direction(const Inequalities& in, const Newton& newton, const Point& p)
 {
   constexpr int most = 3;
   constexpr double reach = 0.3, gain = 0.03;  // of a step more, tried and asked for
-  const VecX zero = VecX::Zero(p.x.size());
-  const Point affine = direction(factor, p, dual, zero, zero);
+  Target target{VecX::Zero(p.c.size()), std::vector<Vec3>(in.pairs(), Vec3::Zero())};
+  const Point affine = newton.towards(target);
   Point trial = p;
-  move(trial, affine, longest_step(p, affine));
-  const double mu = complementarity(p);
-  const double centre = mu * std::pow(complementarity(trial) / mu, 3);
-  VecX target_u = centre - affine.x.cwiseProduct(affine.y).array();
-  VecX target_v = centre + affine.x.cwiseProduct(affine.z).array();
-  Point best = direction(factor, p, dual, target_u, target_v);
-  double step = longest_step(p, best);
-  for (int k = 0; k < most && step < 0.9; ++k) {
+  move(trial, affine, longest_step(in, p, affine));
+  const double mu = complementarity(in, p);
+  const double centre = mu * std::pow(complementarity(in, trial) / mu, 3);
+  target.single = centre - affine.c.cwiseProduct(affine.z).array();
+  for (std::size_t k = 0; k < in.pairs(); ++k) {
+    const cone::Scaling& scaling = newton.scaling(k);
+    const Vec3 du = scaling.inverse * in.cone_change(k, affine.x);
+    const Vec3 dz = scaling.W * affine.cones[k];
+    target.cones[k] = Vec3(centre, 0.0, 0.0) - cone::product(du, dz);
+  }
+  Point best = newton.towards(target);
+  double step = longest_step(in, p, best);
+  for (int k = 0; k < most && step < 0.9 && in.singles() > 0; ++k) {
     trial = p;
     move(trial, best, std::min(step + reach, 1.0));
-    target_u += short_of(trial.u.cwiseProduct(trial.y), centre);
-    target_v += short_of(trial.v.cwiseProduct(trial.z), centre);
-    const Point next = direction(factor, p, dual, target_u, target_v);
-    const double longer = longest_step(p, next);
+    target.single += short_of(trial.c.cwiseProduct(trial.z), centre);
+    const Point next = newton.towards(target);
+    const double longer = longest_step(in, p, next);
     if (longer < step + gain) break;
     best = next;
     step = longer;
@@ -107,79 +155,64 @@ Point corrected_direction(const core::Cholesky& factor, const Point& p, const Ve
 
 /// Moves as far as keeps every product from running ahead of the others: without this the step
 /// may cycle between two corners.
-void move_centred(Point& p, const Point& d)
+void move_centred(const Inequalities& in, Point& p, const Point& d)
 {
   constexpr double neighbourhood = 1e-3;
-  double step = longest_step(p, d);
+  double step = longest_step(in, p, d);
   for (int cut = 0; cut < 20; ++cut, step *= 0.7) {
     Point trial = p;
     move(trial, d, step);
-    const double least = std::min(trial.u.cwiseProduct(trial.y).minCoeff(),
-                                  trial.v.cwiseProduct(trial.z).minCoeff());
-    if (least < neighbourhood * complementarity(trial) && cut < 19) continue;
+    const double least = least_product(in, trial);
+    if (least < neighbourhood * complementarity(in, trial) && cut < 19) continue;
     p = trial;
     return;
   }
 }
 
-/// x with the rows that tend to a bound put on it: whether a row slips is then no matter of degree.
-VecX on_bounds(const Point& p, const VecX& F)
-{
-  VecX x = p.x.cwiseMax(-F).cwiseMin(F);
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    if (p.u[i] < p.y[i]) x[i] = -F[i];
-    if (p.v[i] < p.z[i]) x[i] = F[i];
-  }
-  return x;
-}
-
-/// The start drawn a little into the box, with the multipliers its gradient asks for.
-Point warm_point(const MatX& S, const VecX& s, const VecX& F, const VecX& start)
+/// The start drawn a little into the bounds, with the multipliers its gradient asks for.
+Point warm_point(const Inequalities& in, const MatX& S, const VecX& s, const Bounds& bounds,
+                 const VecX& start)
 {
   constexpr double inwards = 0.1;  // of F, and of the mean gradient
-  const VecX x = start.cwiseMax((inwards - 1.0) * F).cwiseMin((1.0 - inwards) * F);
-  const VecX gradient = S * x + s;
+  Point p{Bounds{(1.0 - inwards) * bounds.F, bounds.pairs}.clip(start), {}, {}, {}};
+  p.c = in.values(p.x);
+  const VecX gradient = S * p.x + s;
   const double least = inwards * gradient.cwiseAbs().mean() + 1e-12;
-  return {x, x + F, F - x, gradient.cwiseMax(0.0).array() + least,
-          (-gradient).cwiseMax(0.0).array() + least};
+  // c has the slopes ±1: what pulls a row back is the gradient's part along it.
+  p.z = in.change(gradient).cwiseMax(0.0).array() + least;
+  for (int i : bounds.pairs) {
+    const Eigen::Vector2d pull = gradient.segment<2>(i);
+    p.cones.push_back({(1.0 + inwards) * pull.norm() + least, pull.x(), pull.y()});
+  }
+  return p;
 }
 
 }  // namespace
 
-double box_residual(const MatX& S, const VecX& s, const VecX& F, const VecX& x)
+BoxSolution interior_point(const MatX& S_in, const VecX& s_in, const Bounds& bounds_in,
+                           const VecX& start, double tolerance, int max_iterations)
 {
-  const VecX gradient = S * x + s;
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double w = std::max(S(i, i), 1e-300);
-    const double natural = x[i] - std::clamp(x[i] - gradient[i] / w, -F[i], F[i]);
-    if (std::isnan(natural)) return natural;
-    worst = std::max(worst, w * std::abs(natural));
-  }
-  return worst;
-}
-
-BoxSolution interior_point(const MatX& S_in, const VecX& s_in, const VecX& F_in, const VecX& start,
-                           double tolerance, int max_iterations)
-{
+  const VecX& F_in = bounds_in.F;
   const double force = std::max(F_in.maxCoeff(), 1e-300);
   const double gap = s_in.cwiseAbs().maxCoeff() + (S_in * F_in).cwiseAbs().maxCoeff() + 1e-300;
-  const VecX F = F_in.cwiseMax(1e-14 * force) / force;
+  const Bounds bounds{F_in.cwiseMax(1e-14 * force) / force, bounds_in.pairs};
+  const Inequalities in(bounds);
   const MatX S = S_in * (force / gap);
   const VecX s = s_in / gap;
-  Point p = warm_point(S, s, F, start / force);
+  Point p = warm_point(in, S, s, bounds, start / force);
   BoxSolution result;
   for (int k = 0; k < max_iterations; ++k) {
-    const VecX dual = S * p.x + s - p.y + p.z;
-    result.finished = gap * box_residual(S, s, F, on_bounds(p, F)) <= tolerance;
+    const VecX on = in.on_bounds(p.x, p.c, p.z, p.cones);
+    result.finished = gap * box_residual(S, s, bounds, on) <= tolerance;
     if (result.finished) break;
-    const core::Cholesky factor(barrier(S, p));
+    const Newton newton(in, S, s, p);
     ++result.factorisations;
-    if (!factor.regular()) break;
-    const Point d = corrected_direction(factor, p, dual);
-    move_centred(p, d);
+    if (!newton.regular()) break;
+    const Point d = corrected_direction(in, newton, p);
+    if (!d.x.allFinite()) break;
+    move_centred(in, p, d);
   }
-  result.x = on_bounds(p, F) * force;
+  result.x = in.on_bounds(p.x, p.c, p.z, p.cones) * force;
   return result;
 }
 

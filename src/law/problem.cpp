@@ -6,49 +6,113 @@
 #include "core/dense.hpp"
 
 namespace trocar::law {
+namespace {
+
+double leader_of(const Law& law, const VecX& lambda)
+{
+  return law.leader < 0 ? 0.0 : lambda[law.leader];
+}
+
+/// Gap of rows that nothing can move, where they do not bear what it asks for.
+double unmet_gap(const Law& law, const Few& lambda, const Few& delta, double leader)
+{
+  if (law.set == Law::Set::zero) return std::abs(delta[0]);
+  if (law.set == Law::Set::cone)
+    return std::max(unmet_gap(Law::interval(0.0, law.upper), lambda.head<1>(), delta.head<1>(), 0),
+                    unmet_gap(Law::disc(std::min(law.friction * lambda[0], law.shear)),
+                              lambda.tail<2>(), delta.tail<2>(), 0));
+  const Few asked = resisting(law, delta, leader);
+  const bool met = asked.allFinite() && (lambda - asked).norm() <= 1e-9 * asked.norm();
+  return met ? 0.0 : delta.norm();
+}
+
+}  // namespace
 
 double kkt_residual(const Problem& problem, const VecX& lambda)
 {
-  const VecX delta = problem.W * lambda + problem.g;
+  VecX delta = problem.W * lambda + problem.g, compliance = problem.W.diagonal();
+  if (problem.softness.size() > 0) {
+    delta += problem.softness.cwiseProduct(lambda);
+    compliance += problem.softness;
+  }
+  if (!delta.allFinite()) return std::nan("");
   double worst = 0.0;
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    const double w = problem.W(i, i);
-    if (problem.kind[static_cast<std::size_t>(i)] == RowKind::bilateral) {
-      worst = std::max(worst, std::abs(delta[i]));
-    } else if (w <= 0.0) {
-      const double asked = -std::copysign(problem.bound[i], delta[i]);
-      if (std::abs(lambda[i] - asked) > 1e-9 * problem.bound[i])
-        worst = std::max(worst, std::abs(delta[i]));
-    } else {
-      const double F = problem.bound[i];
-      const double natural = lambda[i] - std::clamp(lambda[i] - delta[i] / w, -F, F);
-      worst = std::max(worst, w * std::abs(natural));
-    }
-    if (std::isnan(delta[i])) return delta[i];
+  for (const Block& block : problem.blocks) {
+    const int n = block.law.rows();
+    const Few mine = lambda.segment(block.first, n), opens = delta.segment(block.first, n);
+    const double w = compliance.segment(block.first, n).mean();
+    const double leader = leader_of(block.law, lambda);
+    worst = std::max(worst, w > 0.0 ? residual(block.law, mine, opens, w, leader)
+                                    : unmet_gap(block.law, mine, opens, leader));
   }
   return worst;
 }
 
 namespace {
 
-/// -1, 0, 1: at the lower end of its interval, within, at the upper one.
-int place(RowKind kind, double bound, double lambda)
+enum class RowState : signed char { low = -1, held = 0, high = 1 };
+
+/// At the lower end of its interval, within, at the upper one. `slack`: of ends that are not exact.
+RowState place(double lower, double upper, double lambda, double slack)
 {
-  constexpr double round_off = 1e-9;
-  if (kind == RowKind::bilateral) return 0;
-  const double least = kind == RowKind::push ? 0.0 : -bound;
-  if (lambda >= bound * (1.0 - round_off)) return 1;
-  return lambda <= least + bound * round_off ? -1 : 0;
+  const double width = std::max(std::isfinite(upper) ? std::abs(upper) : 0.0, std::abs(lower));
+  const double off = 1e-9 * width + slack;
+  if (lambda >= upper - off) return RowState::high;
+  return lambda <= lower + off ? RowState::low : RowState::held;
+}
+
+/// What the rows of a block do at these multipliers. Rows that slip are high, rows that bear
+/// nothing low. Sets that follow a multiplier are met to `slack` [N].
+void add_states(const Law& law, const Few& lambda, double leader, double slack,
+                std::vector<RowState>& states)
+{
+  const auto slip = [&](const Few& t, double radius, double off) {
+    const bool slips = t.norm() >= radius * (1.0 - 1e-9) - std::min(off, 0.5 * radius);
+    const RowState state = radius > 0.0 ? RowState::high : RowState::low;
+    states.insert(states.end(), 2, slips ? state : RowState::held);
+  };
+  switch (law.set) {
+    case Law::Set::zero:
+      states.push_back(RowState::held);
+      break;
+    case Law::Set::interval:
+      states.push_back(place(law.lower, law.upper, lambda[0], 0.0));
+      break;
+    case Law::Set::follower: {
+      const double bound = law.friction * std::max(leader, 0.0);
+      states.push_back(place(-bound, bound, lambda[0], std::min(slack, 0.5 * bound)));
+      break;
+    }
+    case Law::Set::disc:
+      slip(lambda, law.upper, 0.0);
+      break;
+    case Law::Set::cone:
+      states.push_back(place(0.0, law.upper, lambda[0], 0.0));
+      slip(lambda.tail<2>(), std::min(law.friction * std::max(lambda[0], 0.0), law.shear), slack);
+      break;
+  }
+}
+
+std::vector<RowState> states_of(const Problem& problem, const VecX& lambda, double tolerance)
+{
+  std::vector<RowState> states;
+  for (const Block& block : problem.blocks) {
+    const int n = block.law.rows();
+    const double w = problem.W.diagonal().segment(block.first, n).mean();
+    add_states(block.law, lambda.segment(block.first, n), leader_of(block.law, lambda),
+               w > 0.0 ? 2.0 * tolerance / w : 0.0, states);
+  }
+  return states;
 }
 
 }  // namespace
 
-VecX response(const Problem& problem, const VecX& lambda, const VecX& dg)
+VecX response(const Problem& problem, const VecX& lambda, const VecX& dg, double tolerance)
 {
+  const std::vector<RowState> states = states_of(problem, lambda, tolerance);
   std::vector<int> held;
   for (int i = 0; i < static_cast<int>(problem.rows()); ++i)
-    if (place(problem.kind[static_cast<std::size_t>(i)], problem.bound[i], lambda[i]) == 0)
-      held.push_back(i);
+    if (states[static_cast<std::size_t>(i)] == RowState::held) held.push_back(i);
   VecX change = VecX::Zero(problem.rows());
   if (held.empty()) return change;
   MatX W = problem.W(held, held);
@@ -57,14 +121,16 @@ VecX response(const Problem& problem, const VecX& lambda, const VecX& dg)
   return change;
 }
 
-bool same_states(const Problem& problem, const VecX& a, const VecX& b)
+bool same_states(const Problem& problem, const VecX& a, const VecX& b, double tolerance)
 {
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!problem.normal.empty() && problem.normal[at] >= 0 && problem.friction[i] > 0.0)
-      return false;
-    const RowKind kind = problem.kind[at];
-    if (place(kind, problem.bound[i], a[i]) != place(kind, problem.bound[i], b[i])) return false;
+  const std::vector<RowState> before = states_of(problem, a, tolerance);
+  const std::vector<RowState> after = states_of(problem, b, tolerance);
+  if (before != after) return false;
+  for (const Block& block : problem.blocks) {
+    const Law& law = block.law;
+    if (law.set == Law::Set::follower && law.friction > 0.0) return false;
+    const bool turns = law.set == Law::Set::cone ? law.friction > 0.0 : law.set == Law::Set::disc;
+    if (turns && after[static_cast<std::size_t>(block.end() - 1)] == RowState::high) return false;
   }
   return true;
 }

@@ -1,40 +1,33 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "core/math.hpp"
+#include "law/law.hpp"
 
 namespace trocar::law {
 
-using core::MatX;
-using core::VecX;
+/// Rows that share a law, and the coupling point they belong to.
+struct Block
+{
+  int first = 0;
+  Law law{};
+  int point = 0;  ///< ascending: Gauss-Seidel solves the blocks of a point together
 
-/// The law of one constraint row.
-enum class RowKind : std::uint8_t {
-  bilateral,  ///< δ = 0, λ free
-  box,        ///< |λ| <= F;  stick: δ = 0;  slip: λ = -F sign(δ)
-  push        ///< 0 <= λ <= F;  contact: δ = 0;  apart: δ > 0, λ = 0;  yielding: δ < 0, λ = F
+  int end() const { return first + law.rows(); }
 };
 
-/// The dense problem  δ = W λ + g, (δ, λ) in every row's law  (DESIGN eq., paper eq. 3).
-/// With fixed bounds it is the optimality system of min ½ λᵀWλ + gᵀλ over the box.
+/// The dense problem  δ = W λ + g, (δ, λ) in every block's law  (DESIGN eq., paper eq. 3).
+/// With sets of fixed size it is the optimality system of min ½ λᵀWλ + gᵀλ over them.
 struct Problem
 {
   MatX W;                     ///< compliance (rows x rows) [m/N], symmetric positive semidefinite
   VecX g;                     ///< violation after free motion (rows) [m]
-  std::vector<RowKind> kind;  ///< per row
-  VecX bound;                 ///< F >= 0 (rows) [N]; ignored on bilateral rows
-  /// Rows whose bound follows another multiplier, F = friction · max(λ_normal, 0): the row's index
-  /// or -1 (rows, or empty: all bounds fixed), and the coefficient.
-  std::vector<int> normal;
-  VecX friction;
-  /// Smooth rows: a bilateral row with softness c obeys δ = -c λ, a linear dashpot or spring
-  /// (rows, or empty: all hard) [m/N].
+  std::vector<Block> blocks;  ///< in order, of all rows
+  /// Compliant rows: one of the law `zero` with softness c obeys δ = -c λ, a linear dashpot or
+  /// spring (rows, or empty: all hard) [m/N].
   VecX softness;
-  std::vector<int> group;  ///< coupling point of each row, ascending: PGS solves them together
-  VecX start;              ///< multipliers to start from (rows) [N]
+  VecX start;  ///< multipliers to start from (rows) [N]
 
   Eigen::Index rows() const { return g.size(); }
 };
@@ -71,16 +64,16 @@ struct Multipliers
   double factor_seconds = 0.0;  ///< wall time of the pseudo-inverse or factor of W_bb
 };
 
-/// True when every row holds, slips or yields at both multipliers alike, and no bound follows
-/// another multiplier: between them the problem is linear.
-bool same_states(const Problem& problem, const VecX& a, const VecX& b);
+/// True when every row holds, slips or yields at both multipliers alike, and between them the
+/// problem is linear: no set follows a multiplier, and no slip turns. `tolerance`: to which the
+/// laws were met [m].
+bool same_states(const Problem& problem, const VecX& a, const VecX& b, double tolerance);
 
 /// ∂λ/∂g · dg at a solution [N]: rows that hold go on holding, those at their bounds stay there.
-VecX response(const Problem& problem, const VecX& lambda, const VecX& dg);
+VecX response(const Problem& problem, const VecX& lambda, const VecX& dg, double tolerance);
 
-/// max over rows of |δ_i| (bilateral) and W_ii |λ_i - clip(λ_i - δ_i / W_ii, ±F_i)| (box) [m]:
-/// zero exactly at a solution. For bilateral and box rows (`solve` turns push rows into boxes). A
-/// row that nothing can move, W_ii = 0, is off by |δ_i| where λ_i is not what that gap asks for.
+/// Largest residual of a block in its law [m], zero exactly at a solution. A block that nothing can
+/// move, W_ii = 0, is off by its gap where its multipliers are not what that gap asks for.
 double kkt_residual(const Problem& problem, const VecX& lambda);
 
 }  // namespace trocar::law

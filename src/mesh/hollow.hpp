@@ -6,10 +6,10 @@
 
 namespace trocar::mesh {
 
-/// The mesh without the tets of one volume: a void. The faces between it and what remains become
-/// the physical surface of that name; nodes that only it had are gone, and faces and points of
-/// other groups with them. Throws Failure (65) when there is no such volume, nothing else, or a
-/// surface has that name already. Not collective.
+/// The mesh without the tets of one volume, which becomes a void. Its faces to the rest become a
+/// physical surface of its name. Nodes of that volume alone are dropped, with their faces and
+/// points in other groups. Throws Failure (65) when that volume does not exist, is the only one,
+/// or has the name of a surface. Not collective.
 Mesh hollow(const Mesh& mesh, const std::string& volume);
 
 }  // namespace trocar::mesh

@@ -31,7 +31,7 @@ NodeToTets tets_around(const Mesh& mesh, const NodesOfTet& nodes_of_tet)
   return map;
 }
 
-/// The faces of a tet of which a node is the least.
+/// Adds the faces of t whose least node is `node`.
 void add_faces_from(const Mesh& mesh, int t, int node, std::vector<TetFace>& faces)
 {
   const Tet& tet = mesh.tets[static_cast<std::size_t>(t)];

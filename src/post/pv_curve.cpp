@@ -32,7 +32,7 @@ step::Outcome<step::Accepted> at_ratio(Model& model, int cavity, State from, dou
                                        double ratio, int halvings)
 {
   const double V0 = undeformed_volume(model, cavity);
-  cavity::Cavities::hold_volume(cavity, ratio * V0, from.cavities);
+  cavity::hold_volume(cavity, ratio * V0, from.cavities);
   const core::TimeStep no_time{0.0, 0.0, true};
   step::Outcome<step::Accepted> result = step::advance(model, from, no_time);
   if (result) return result;

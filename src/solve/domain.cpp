@@ -39,7 +39,7 @@ std::vector<Entry> sorted_by(int Entry::*number, const std::vector<Entry>& entri
   return sorted;
 }
 
-/// The pattern of entries in any order, and their sources in its order.
+/// Sorts the entries into a pattern, and their sources alike.
 SymmetricPattern lay_out(std::vector<Entry> entries, int size, std::vector<long long>& source)
 {
   for (auto number : {&Entry::row, &Entry::column}) entries = sorted_by(number, entries, size);
@@ -216,7 +216,7 @@ struct Builder
     domain.order = order(rank, whole.ranks() > 1 ? std::vector<int>{} : whole.pinned);
   }
 
-  /// Parts of a domain that touch no open place are tied to one by a zero, so that the open ones
+  /// Ties a part of a domain that touches no open dof to one by a zero entry. So the open dofs
   /// stay last in the elimination tree.
   void tie_loose_ends(int rank, int first_open)
   {

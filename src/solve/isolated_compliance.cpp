@@ -11,33 +11,6 @@ constexpr std::size_t block_columns = 64;  ///< bounds the dense work space to 6
 
 }  // namespace
 
-OwnedField spread(const Probes& probes, const core::VecX& f, const fem::Space& space)
-{
-  OwnedField forces = space.zero();
-  for (std::size_t k = 0; k < probes.nodes.size(); ++k) {
-    const int local = space.owned_local(probes.nodes[k]);
-    if (local >= 0) forces.node(local) = f.segment<3>(3 * static_cast<Eigen::Index>(k));
-  }
-  for (std::size_t k = 0; k < probes.wide.size(); ++k)
-    forces.value +=
-        f[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] * probes.wide[k]->vector.value;
-  return forces;
-}
-
-core::VecX read(const Probes& probes, const OwnedField& u, const fem::Space& space)
-{
-  core::VecX values = core::VecX::Zero(probes.size());
-  for (std::size_t k = 0; k < probes.nodes.size(); ++k) {
-    const int local = space.owned_local(probes.nodes[k]);
-    if (local >= 0) values.segment<3>(3 * static_cast<Eigen::Index>(k)) = u.node(local);
-  }
-  for (std::size_t k = 0; k < probes.wide.size(); ++k)
-    values[static_cast<Eigen::Index>(3 * probes.nodes.size() + k)] =
-        probes.wide[k]->vector.value.dot(u.value);
-  space.comm().sum(values);
-  return values;
-}
-
 KspCompliance::KspCompliance(LinearSystem& system, const fem::Dirichlet& fixed, ColumnSolver solver,
                              core::Ledger& ledger)
     : system_(&system), fixed_(&fixed), solver_(solver), ledger_(&ledger)

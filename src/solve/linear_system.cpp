@@ -127,7 +127,7 @@ void LinearSystem::raise_mumps_workspace(PC pc)
   MatSolverType package = nullptr;
   TROCAR_PETSC(PCFactorGetMatSolverType(pc, &package));
   if (!is(package, MATSOLVERMUMPS)) return;
-  // The factor must know our prefix before it exists, or MUMPS reads its options without it.
+  // Set the prefix before the factor is made, or MUMPS reads its options without it.
   Mat matrix = needs_aij_ ? converted_.get() : assembled_.get();
   TROCAR_PETSC(MatSetOptionsPrefixFactor(matrix, settings_.prefix.c_str()));
   PetscBool given = PETSC_FALSE;

@@ -61,9 +61,9 @@ void ReachColumns::append(int s, const MatX& Y, const int* slots)
   piece.slot.insert(piece.slot.end(), slots, slots + Y.cols());
 }
 
-/// Rows begin … end of Y <- L⁻¹ Y with the diagonal block of a supernode. By halves, because
-/// products run several times faster than triangular solves; and only on the columns that are not
-/// zero yet: sorted by position, those that begin further down stand at the end.
+/// Rows begin … end of Y <- L⁻¹ Y with the diagonal block of a supernode. Halves the rows, because
+/// products run several times faster than triangular solves. Skips columns that are still zero:
+/// columns are sorted by position, so those stand at the end.
 void ReachColumns::solve_rows(const SupernodalFactor::Supernode& node, int begin, int end,
                               const int* first_position, const int* last_position, MatX& Y)
 {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "cavity/network.hpp"
+#include "insertion/channel.hpp"
+#include "insertion/tip_events.hpp"
 #include "step/refusals.hpp"
 
 namespace trocar::step {
@@ -51,7 +54,7 @@ void accept_cavities(const Model& model, const core::TimeStep& now, Newton& newt
   State& next = newton.state();
   StepReport& report = newton.report();
   const cavity::Shape shape = cavities.exact() ? newton.walls() : cavities.shape(next.tissue.u);
-  report.cavities = cavities.accept(next.cavities, next.tissue.u, shape, now);
+  report.cavities = cavity::accept(cavities, {next.tissue.u, shape, now}, next.cavities);
   for (cavity::CavityReport& cavity : report.cavities)
     cavity.iterations = std::max(report.linearisations, report.pressure_updates);
 }
@@ -65,15 +68,15 @@ void accept_needles(const Model& model, Newton& newton)
     NeedleReport& needle = newton.report().needles[i];
     const needle::Shaft& shaft = next.needles[i].shaft;
     if (!solution.of_needle.empty())
-      needle.coupling = model.insertion->accept(next.insertions[i], solution.of_needle[i],
-                                                solution.saddle.multipliers);
+      needle.coupling = insertion::accept(*model.ground, next.insertions[i], solution.of_needle[i],
+                                          solution.saddle.multipliers);
     if (needle.coupling.tip != insertion::TipOutcome::holds) {
       if (!u) u = model.space.gather(next.tissue.u);
-      model.insertion->settle(next.insertions[i], needle.coupling, shaft,
-                              {model.scene.mesh, *model.locator, *u});
+      insertion::settle_tip(*model.ground, next.insertions[i], needle.coupling, shaft,
+                            {model.scene.mesh, *model.locator, *u});
     }
     needle.tip = shaft.tip();
-    needle.depth = model.insertion->depth(next.insertions[i]);
+    needle.depth = insertion::depth(next.insertions[i]);
   }
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "cavity/network.hpp"
+#include "insertion/channel.hpp"
+
 namespace trocar::step {
 namespace {
 
@@ -15,8 +18,8 @@ std::optional<core::Refusal> move_needles(const Model& model, const State& old,
     const needle::Shaft& shaft =
         (next.needles[i] = model.needles[i].predict(old.needles[i], next.t)).shaft;
     if (now.start) continue;
-    next.insertions[i] = model.insertion->advance(old.insertions[i], shaft, tissue);
-    if (model.insertion->astray(next.insertions[i], shaft, tissue))
+    next.insertions[i] = insertion::advance(*model.ground, old.insertions[i], shaft, tissue);
+    if (insertion::off_channel(*model.ground, next.insertions[i], shaft, tissue))
       return core::Refusal{
           "needle '" + model.needles[i].settings().name +
           "': its shaft enters the tissue beside its channel (contact of shafts and surfaces is "
@@ -53,8 +56,8 @@ core::Outcome<State> predict(const Model& model, const State& old, const Scheme&
   next.velocity = scheme.velocity();
   if (auto refusal = move_needles(model, old, now, next)) return std::move(*refusal);
   if (model.cavities && !now.start)
-    next.cavities =
-        model.cavities->advance(old.cavities, old.t, next.t, voids_of(next), old.tissue.u);
+    next.cavities = cavity::advance(*model.cavities, old.cavities, {old.t, next.t, voids_of(next)},
+                                    old.tissue.u);
   return next;
 }
 

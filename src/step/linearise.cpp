@@ -84,8 +84,8 @@ void Newton::collect_rows(Solution& solution)
   Rows rows = coupling_rows(*model_, now, next_);
   solution.of_needle = std::move(rows.of_needle);
   if (model_->cavities)
-    solution.of_cavities =
-        model_->cavities->add_rows(next_.cavities, walls_, next_.tissue.u, now, rows.set);
+    solution.of_cavities = cavity::add_rows(*model_->cavities, next_.cavities,
+                                            {next_.tissue.u, walls_, now}, rows.set);
   solution.system = constraint::System(std::move(rows.set), std::move(bodies));
 }
 
@@ -95,7 +95,7 @@ core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
   collect_rows(solution);
   if (model_->cavities)
     solution.system.relinearise = [&](const core::VecX& lambda, constraint::Set& set) {
-      return model_->cavities->refresh(lambda, solution.of_cavities, set);
+      return cavity::refresh(*model_->cavities, lambda, solution.of_cavities, set);
     };
   solution.system.place = [&](int row) { return place_of(model_->scene, solution, row); };
   auto saddle = meet_laws(at, solution.system);  // 4
@@ -117,7 +117,7 @@ core::Outcome<constraint::Saddle> Newton::meet_laws(solve::Linearisation& at,
   const constraint::LawSettings settings{model_->scene.laws, model_->scene.compare,
                                          &model_->ledger};
   constraint::Laws laws(system, settings, report_);
-  if (!model_->cavities || model_->cavities->frozen(next_.cavities).empty())
+  if (!model_->cavities || cavity::frozen(*model_->cavities, next_.cavities).empty())
     return constraint::solve_saddle(laws, at, start,
                                     {model_->scene.tissue.reuse == solve::Reuse::stale,
                                      model_->scene.stale_error, lag_tolerance(!system.empty())});
@@ -134,7 +134,8 @@ void Newton::correct(Solution& solution)
   next_.tissue.u = std::move(solution.saddle.u);
   next_.tissue.v.value = now.rates().velocity * (next_.tissue.u.value - past.tissue.u.value);
   if (model_->cavities)
-    model_->cavities->take(solution.of_cavities, solution.lambda(), now, next_.cavities);
+    cavity::take_pressures(*model_->cavities, solution.of_cavities, solution.lambda(), now,
+                           next_.cavities);
   report_.needles.assign(model_->needles.size(), {});
   for (std::size_t i = 0; i < model_->needles.size(); ++i) {
     const needle::Needle& needle = model_->needles[i];

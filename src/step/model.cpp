@@ -24,7 +24,7 @@ Model::Model(const Scene& of, const base::Comm& comm)
   }
   if (needles.empty()) return;
   locator.emplace(scene.mesh);
-  insertion.emplace(scene.mesh, *locator, scene.insertion);
+  ground.emplace(scene.mesh, *locator, scene.insertion);
 }
 
 bool Model::beams() const

@@ -34,7 +34,7 @@ struct Model
   std::vector<needle::Needle> needles{};
   bool driven_at_start = false;  ///< motion that rows or supports prescribe from the start on
   std::optional<mesh::Locator> locator{};                   ///< only with needles
-  std::optional<insertion::Insertion> insertion{};          ///< only with needles
+  std::optional<insertion::Ground> ground{};                ///< only with needles
   std::optional<cavity::Cavities> cavities{};               ///< only with cavities
   std::optional<cavity::PressureSearch> pressure_search{};  ///< likewise
 };

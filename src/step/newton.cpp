@@ -6,7 +6,7 @@
 #include "core/words.hpp"
 #include "step/refusals.hpp"
 
-// When a step has been linearised often enough, and what leads on when it has not.
+// Decides when the Newton iteration of a step ends, and how it goes on until then.
 namespace trocar::step {
 
 Newton::Newton(Model& model, const Scheme& scheme, State first)
@@ -84,7 +84,7 @@ bool Newton::balanced()
   // Sums over stiff parts are rounded: as long as it helps, the residual is refined.
   if (now.is_static && !balance.carries(effort_.later) && balance.lost < 0.5 * lost_before_)
     return false;
-  if (model_->exact_volumes() && !model_->cavities->closed(next_.cavities, walls_, now))
+  if (model_->exact_volumes() && !cavity::closed(*model_->cavities, next_.cavities, walls_, now))
     return false;
   return gaps_closed(*model_, *solution_, rows_here());
 }

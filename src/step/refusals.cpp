@@ -41,16 +41,16 @@ std::string inverted_at(const Scene& scene, int tet)
 std::string place_of(const Scene& scene, const Solution& solution, int row)
 {
   const constraint::Row& one = solution.system.set().rows()[static_cast<std::size_t>(row)];
-  if (one.wide >= 0) {
+  if (!one.distributed.empty()) {
     const int k = row - solution.of_cavities.first;
     const int cavity = solution.of_cavities.cavity[static_cast<std::size_t>(k)];
-    if (cavity::Cavities::drained(solution.of_cavities.fluid) == cavity)
+    if (cavity::drained(solution.of_cavities.fluid) == cavity)
       return "cavity '" + scene.cavities.cavities[static_cast<std::size_t>(cavity)].name +
              "': more fluid would flow out within the step than there is";
     return "cavity '" + scene.cavities.cavities[static_cast<std::size_t>(cavity)].name +
            "': its wall is held all over";
   }
-  const Vec3 X = one.anchor.mean(
+  const Vec3 X = one.tissue.front().anchor.mean(
       [&](int node) -> Vec3 { return scene.mesh.x[static_cast<std::size_t>(node)]; });
   return "needle '" + scene.needles[static_cast<std::size_t>(one.body)].name +
          "' where the undeformed tissue has " + at_place(X) + ", which a support holds";

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "constraint/laws.hpp"
+#include "insertion/coupling.hpp"
 #include "step/state.hpp"
 
 namespace trocar::step {

@@ -14,10 +14,10 @@ Rows coupling_rows(const Model& model, const core::TimeStep& now, const State& s
   const fem::GlobalField u = model.space.gather(state.tissue.u);
   const insertion::Deformed tissue(model.scene.mesh, *model.locator, u);
   const double passing = now.start ? 0.0 : now.h;
-  for (std::size_t i = 0; i < model.needles.size(); ++i)
-    rows.of_needle.push_back(model.insertion->add_rows(state.insertions[i], state.needles[i].shaft,
-                                                       tissue, static_cast<int>(i), passing,
-                                                       rows.set));
+  for (std::size_t i = 0; i < model.needles.size(); ++i) {
+    const insertion::Iterate at{state.needles[i].shaft, tissue, static_cast<int>(i), passing};
+    rows.of_needle.push_back(insertion::add_rows(*model.ground, state.insertions[i], at, rows.set));
+  }
   return rows;
 }
 
@@ -51,10 +51,10 @@ double closed_gap(const Model& model)
 
 bool gaps_closed(const Model& model, const Solution& solution, const Rows& here)
 {
-  for (int i = 0; i < here.set.size(); ++i) {
-    const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(i)];
-    const bool hard = row.kind == law::RowKind::bilateral && row.softness == 0.0 &&
-                      row.relative_softness == 0.0 && solution.mobility[i] > 0.0;
+  for (const law::Block& block : here.set.blocks()) {
+    const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(block.first)];
+    const bool hard = block.law.set == law::Law::Set::zero && row.softness == 0.0 &&
+                      row.relative_softness == 0.0 && solution.mobility[block.first] > 0.0;
     if (hard && std::abs(row.gap) > closed_gap(model)) return false;
   }
   return true;
@@ -89,14 +89,15 @@ double left_across(const Model& model, const Scheme& scheme, const State& state,
     d.push_back(next_increment(model, scheme, state, solution, i));
   const core::VecX& lambda = solution.lambda();
   std::vector<double> largest(model.needles.size(), 0.0), change = largest;  // [N]
-  for (int i = 0; i < here.set.size(); ++i) {
+  for (const law::Block& block : here.set.blocks()) {
+    const int i = block.first;
     const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(i)];
-    const bool across = row.body >= 0 && row.kind == law::RowKind::bilateral &&
+    const bool across = row.body >= 0 && block.law.set == law::Law::Set::zero &&
                         row.relative_softness == 0.0 && solution.mobility[i] > 0.0;
     if (!across) continue;
     const auto b = static_cast<std::size_t>(row.body);
     double gap = row.gap + row.softness * lambda[i];
-    for (const auto& [dof, coefficient] : row.lever) gap -= coefficient * d[b][dof];
+    for (const auto& [dof, coefficient] : row.on_body) gap -= coefficient * d[b][dof];
     const double open = std::max(std::abs(gap) - closed_gap(model), 0.0);
     largest[b] = std::max(largest[b], std::abs(lambda[i]));
     change[b] = std::max(change[b], open / solution.mobility[i]);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cavity/settings.hpp"
-#include "insertion/insertion.hpp"
+#include "insertion/ground.hpp"
 #include "law/compare.hpp"
 #include "mesh/mesh.hpp"
 #include "needle/needle.hpp"

@@ -17,7 +17,7 @@ class Scheme
   Scheme& operator=(const Scheme&) = delete;
 
   const core::TimeStep& now() const { return now_; }  ///< with the rates of the scheme
-  /// û and v̂: what velocities and accelerations are differenced from.
+  /// û and v̂ in h v = lead (u - û) and a = (v - v̂)/h̄.
   const State& past() const { return *past_; }
   /// What the new velocity stands for.
   const Differenced& velocity() const { return velocity_; }

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "cavity/cavities.hpp"
-#include "insertion/insertion.hpp"
+#include "cavity/state.hpp"
+#include "insertion/state.hpp"
 #include "needle/needle.hpp"
 #include "tissue/tissue.hpp"
 

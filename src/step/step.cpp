@@ -1,5 +1,7 @@
 #include "step/step.hpp"
 
+#include "cavity/rows.hpp"
+#include "insertion/channel.hpp"
 #include "step/accept.hpp"
 #include "step/events.hpp"
 #include "step/newton.hpp"
@@ -28,20 +30,21 @@ Outcome<Accepted> initial_state(Model& model)
   state.tissue = model.tissue.at_rest();
   for (const needle::Needle& needle : model.needles) {
     state.needles.push_back(needle.initial());
-    state.insertions.push_back(model.insertion->start(needle));
+    state.insertions.push_back(insertion::start(*model.ground, needle));
   }
-  if (model.cavities) state.cavities = model.cavities->start();
+  if (model.cavities) state.cavities = cavity::start(*model.cavities);
   const TimeSettings& time = model.scene.time;
   const core::TimeStep start = core::TimeStep::at_start(time.step);
   if (time.start_in_equilibrium || time.is_static) return equilibrium(model, state, start);
   StepReport report;
   for (std::size_t i = 0; i < model.needles.size(); ++i)
     report.needles.push_back(
-        {state.needles[i].shaft.tip(), model.insertion->depth(state.insertions[i]), {}, {}});
+        {state.needles[i].shaft.tip(), insertion::depth(state.insertions[i]), {}, {}});
   if (model.cavities) {
-    model.cavities->take({}, {}, start, state.cavities);
-    report.cavities = model.cavities->accept(state.cavities, state.tissue.u,
-                                             model.cavities->shape(state.tissue.u), start);
+    cavity::take_pressures(*model.cavities, {}, {}, start, state.cavities);
+    const cavity::Shape shape = model.cavities->shape(state.tissue.u);
+    report.cavities =
+        cavity::accept(*model.cavities, {state.tissue.u, shape, start}, state.cavities);
   }
   const tissue::BoundaryConditions& boundary = model.scene.tissue.boundary;
   report.holders.tools.assign(boundary.displacements.size(), Vec3::Zero());

@@ -69,7 +69,7 @@ class ElementsOf final : public Elements
   {
     return values * shapes_[point].gradient.transpose();
   }
-  /// ∂θ/∂F where the configuration was taken.
+  /// ∂θ/∂F in the configuration `at`.
   Mat3 dilatation_gradient(const Configuration& at, std::size_t point) const
   {
     return exact() ? energy::dilatation_gradient(settings_.model, at.R[point], at.G[point])

@@ -54,8 +54,8 @@ struct FactorOrigin
   }
 };
 
-/// Displacement and velocity of every owned node, and the factor that steps from here may go on
-/// with. A value.
+/// Displacement and velocity of the owned nodes, and the factor that later steps may reuse. A value
+/// type.
 struct TissueState
 {
   OwnedField u;                                  ///< [m]

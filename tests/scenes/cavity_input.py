@@ -72,8 +72,8 @@ check(abs(again - pressure) <= 1e-9 * pressure, "a volume taken out is the same 
 # Geometry.
 refuses("open wall", 65, ["wall", "hole of 3 edges around", "_cap"],
         {"-mesh": block("open", ONE, lambda g: g["wall"].pop())}, ranks=(1, 3))
-refuses("wall that touches itself along an edge", 65, ["wall", "touches itself"],
-        {"-mesh": block("edge", {(1, 1, 1), (2, 2, 1)})})
+refuses("wall that touches itself along a conduit", 65, ["wall", "touches itself"],
+        {"-mesh": block("conduit", {(1, 1, 1), (2, 2, 1)})})
 refuses("wall that touches itself at a node", 65, ["wall", "touches itself at node"],
         {"-mesh": block("node", {(1, 1, 1), (2, 2, 2)})})
 refuses("wall inside out", 65, ["skin", "inside out"], {"-cavity_hole_surface": "skin"})
@@ -127,14 +127,14 @@ refuses("pressure beyond what the tissue holds", 70, ["limit point"],
         {"-cavity_hole_law": "pressure", "-cavity_hole_pressure": "1e5"}, ranks=(1, 2))
 
 # Network and curve.
-refuses("edge of no cavity", 64, ["-edges", "hale", "did you mean 'hole'"], {"-edges": "leak:hale:outside"})
-refuses("edge without ends", 64, ["-edges", "NAME:FROM:TO"], {"-edges": "leak"})
-refuses("edge from a place to itself", 64, ["itself"], {"-edges": "leak:hole:hole"})
-refuses("edge that does nothing", 64, ["-edge_resistance", "leak"], {"-edges": "leak:hole:outside"})
-refuses("edge of no needle", 64, ["-edge_needle", "pin"],
-        {"-edges": "leak:hole:outside", "-edge_leak_needle": "pin"})
-refuses("hole without a needle", 64, ["-edge_needle"],
-        {"-edges": "leak:hole:outside", "-edge_leak_resistance": "1e9", "-edge_leak_hole_radius": "1e-4"})
+refuses("conduit of no cavity", 64, ["-conduits", "hale", "did you mean 'hole'"], {"-conduits": "leak:hale:outside"})
+refuses("conduit without ends", 64, ["-conduits", "NAME:FROM:TO"], {"-conduits": "leak"})
+refuses("conduit from a place to itself", 64, ["itself"], {"-conduits": "leak:hole:hole"})
+refuses("conduit that does nothing", 64, ["-conduit_resistance", "leak"], {"-conduits": "leak:hole:outside"})
+refuses("conduit of no needle", 64, ["-conduit_needle", "pin"],
+        {"-conduits": "leak:hole:outside", "-conduit_leak_needle": "pin"})
+refuses("hole without a needle", 64, ["-conduit_needle"],
+        {"-conduits": "leak:hole:outside", "-conduit_leak_resistance": "1e9", "-conduit_leak_hole_radius": "1e-4"})
 
 
 def apart(groups):
@@ -145,14 +145,14 @@ def apart(groups):
 
 CORNERS = 6 ** 3
 unlike = {"-mesh": block("unlike", {(1, 1, 1), (3, 3, 3)}, apart, n=5), "-cavities": "hole,second",
-          "-cavity_second_surface": "other", "-edges": "tube:hole:second", "-edge_tube_resistance": "1e9",
+          "-cavity_second_surface": "other", "-conduits": "tube:hole:second", "-conduit_tube_resistance": "1e9",
           "-time_step": "0.1", "-time_end": "0.2", "-cavity_hole_law": "gas", "-cavity_hole_ambient_pressure": "1e5"}
-refuses("edge between gas and liquid", 64, ["-edges", "tube", "unlike", "hole", "second"], unlike)
-refuses("edge between two gases", 64, ["-edges", "tube", "unlike"],
+refuses("conduit between gas and liquid", 64, ["-conduits", "tube", "unlike", "hole", "second"], unlike)
+refuses("conduit between two gases", 64, ["-conduits", "tube", "unlike"],
         {**unlike, "-cavity_second_law": "gas", "-cavity_second_ambient_pressure": "9e4"})
 process = run({**good, **unlike, "-cavity_second_law": "gas", "-cavity_second_ambient_pressure": "1e5",
                "-output_dir": os.path.join(FOLDER, "alike")}, 2)
-check(process.returncode == 0, f"an edge between like gases runs: {process.returncode} {process.stderr[-300:]}")
+check(process.returncode == 0, f"a conduit between like gases runs: {process.returncode} {process.stderr[-300:]}")
 refuses("P-V curve without a cavity", 64, ["pv_curve"], {"-analysis": "pv_curve", "-cavities": '""'},
         remove=["-cavity_hole_surface"])
 refuses("P-V curve on one side", 64, ["-pv_low"], {"-analysis": "pv_curve", "-pv_low": "1.1"})

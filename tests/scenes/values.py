@@ -169,7 +169,7 @@ def joined_cavities():
     volume of the deformed wall, which is not the one of their law). No other program is asked."""
     for law, amount in AMOUNT.items():
         what = f"{law} in two joined cavities"
-        _, found = results(what, "twice_hollow_block", {
+        folder, found = results(what, "twice_hollow_block", {
             "-analysis": "static", "-tissue_model": "linear", "-tissue_element": "p1",
             "-tissue_young": "7000", "-tissue_poisson": "0.4", "-fix": "z0",
             "-time_step": "0.1", "-time_end": "5", "-cavities": "a,b", "-cavity_a_surface": "wa",
@@ -177,7 +177,10 @@ def joined_cavities():
             "-cavity_ambient_pressure" if law == "gas" else "-cavity_bulk_modulus":
                 repr(PRESSURE_SCALE),
             "-cavity_a_initial_pressure": "3000", "-cavity_b_initial_pressure": "0",
-            "-edges": "ab:a:b", "-edge_ab_resistance": "4e8"})
+            "-conduits": "ab:a:b", "-conduit_ab_resistance": "4e8"})
+        with h5py.File(os.path.join(folder, "run.h5")) as run:
+            check((run["history/edge/ab/flow"][...] == found["conduit/ab/flow"]).all(),
+                  f"{what}: the flow has its old name too")
         pressure = [found[f"cavity/{name}/pressure"] for name in "ab"]
         total = sum(found[f"cavity/{name}/volume"] * amount(p) for name, p in zip("ab", pressure))
         off = abs(total / total[0] - 1).max()

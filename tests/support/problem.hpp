@@ -8,4 +8,7 @@ namespace trocar::test {
 /// below 3 * points makes W singular.
 law::Problem random_problem(int points, int rank, unsigned seed);
 
+/// The law of a row.
+law::Law& law_of(law::Problem& problem, int row);
+
 }  // namespace trocar::test

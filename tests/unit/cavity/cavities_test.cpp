@@ -1,4 +1,4 @@
-#include "cavity/cavities.hpp"
+#include "cavity/network.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,12 +35,12 @@ struct Scene
       one.model = model;
       settings.cavities.push_back(one);
     }
-    EdgeSettings tube;
+    ConduitSettings tube;
     tube.name = "tube";
     tube.from = 0;
     tube.to = 1;
     tube.resistance = 1e9;
-    settings.edges = {tube};
+    settings.conduits = {tube};
   }
   Cavities cavities() { return {mesh, body.space, settings, ledger}; }
   OwnedField stretched(const Vec3& by) const
@@ -88,11 +88,11 @@ TEST(CavityAmount, FollowsItsCurveInAnyNumberOfSteps)
       core::parse_csv("time,factor\n0,1\n1,2\n2,0.5\n", "curve.csv");
   const Cavities cavities = scene.cavities();
   const OwnedField u = scene.body.space.zero();
-  State state = cavities.start();
+  State state = start(cavities);
   state.cavity[0].amount -= 0.1 * V0;
   double before = 0.0;
   for (double t : {0.5, 1.0, 1.5, 2.0}) {
-    state = cavities.advance(state, before, t, {}, u);
+    state = advance(cavities, state, {before, t, {}}, u);
     before = t;
     const double factor = t <= 1.0 ? 1.0 + t : 3.5 - 1.5 * t;
     EXPECT_NEAR(state.cavity[0].amount, (factor - 0.1) * V0, 1e-12 * V0) << t;
@@ -106,7 +106,7 @@ TEST(CavityForces, PushTheTissueAwayFromTheFluid)
   for (Model model : {Model::frozen, Model::follower}) {
     Scene scene(model);
     const Cavities cavities = scene.cavities();
-    State state = cavities.start();
+    State state = start(cavities);
     state.cavity[0].pressure = 500.0;
     const OwnedField u = scene.body.space.zero();
     const OwnedField f = cavities.forces(state, cavities.shape(u), {0.1, 0.1, false});
@@ -125,7 +125,7 @@ TEST(CavityForces, OfTheFluidsWeightAreItsWeight)
   scene.settings.cavities[1].weight = Vec3(0.0, 0.0, -9810.0);
   const Cavities cavities = scene.cavities();
   const fem::Load load =
-      cavities.load(cavities.start(), cavities.shape(scene.body.space.zero()), {0, 1, true});
+      cavities.load(start(cavities), cavities.shape(scene.body.space.zero()), {0, 1, true});
   ASSERT_EQ(load.force.value.size(), scene.body.space.owned_dofs());
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < scene.body.space.owned(); ++i) sum += load.force.node(i);
@@ -141,7 +141,7 @@ TEST(CavityForces, OfAFollowerTurnWithTheWall)
   scene.settings.cavities[0].pressure.mean = 300.0;
   scene.settings.cavities[1].weight = Vec3(500.0, 0.0, -9810.0);
   const Cavities cavities = scene.cavities();
-  const State state = cavities.start();
+  const State state = start(cavities);
   const core::TimeStep now{0.1, 0.1, false};
   const OwnedField u = scene.stretched(Vec3(0.1, 0.05, -0.1));
   const OwnedField d = test::nodal(scene.body, [](const Vec3& X) {
@@ -165,10 +165,10 @@ TEST(CavityNetwork, MovesFluidFromHighPressureToLow)
 {
   Scene scene;
   const Cavities cavities = scene.cavities();
-  State state = cavities.start();
+  State state = start(cavities);
   const core::TimeStep now{0.2, 0.1, false};
   const core::VecX p = Eigen::Vector2d(300.0, -100.0);
-  const Fluid fluid = cavities.fluid(state, p, now);
+  const Fluid fluid = cavity::fluid(cavities, state, p, now);
   const double moved = 0.1 * 400.0 / 1e9;
   EXPECT_NEAR(fluid.volume[0], V0 - moved, 1e-13 * V0);
   EXPECT_NEAR(fluid.volume[1], V0 + moved, 1e-13 * V0);
@@ -177,9 +177,9 @@ TEST(CavityNetwork, MovesFluidFromHighPressureToLow)
   state.cavity[0].pressure = p[0];
   state.cavity[1].pressure = p[1];
   const OwnedField u = scene.body.space.zero();
-  const auto reports = cavities.accept(state, u, cavities.shape(u), now);
-  EXPECT_NEAR(state.edge[0].flow, 400.0 / 1e9, 1e-20);
-  EXPECT_NEAR(state.edge[0].moved, moved, 1e-20);
+  const auto reports = accept(cavities, {u, cavities.shape(u), now}, state);
+  EXPECT_NEAR(state.conduit[0].flow, 400.0 / 1e9, 1e-20);
+  EXPECT_NEAR(state.conduit[0].moved, moved, 1e-20);
   EXPECT_NEAR(state.cavity[0].amount, V0 - moved, 1e-13 * V0);
   EXPECT_NEAR(state.cavity[1].amount, V0 + moved, 1e-13 * V0);
   EXPECT_NEAR(reports[0].error, moved / V0, 1e-12);  // the wall has not followed
@@ -190,22 +190,22 @@ TEST(CavityNetwork, MovesFluidFromHighPressureToLow)
 TEST(CavityNetwork, FlowsAlongTheNeedleAndThroughItsHole)
 {
   Scene scene;
-  EdgeSettings& edge = scene.settings.edges[0];
-  edge.resistance = 0.0;
-  edge.needle = 0;
-  edge.needle_radius = 0.0006;
-  edge.gap = 1e-4;
-  edge.hole_radius = 0.0003;
-  edge.viscosity = 2e-3;
-  edge.length = 0.02;
+  ConduitSettings& conduit = scene.settings.conduits[0];
+  conduit.resistance = 0.0;
+  conduit.needle = 0;
+  conduit.needle_radius = 0.0006;
+  conduit.gap = 1e-4;
+  conduit.hole_radius = 0.0003;
+  conduit.viscosity = 2e-3;
+  conduit.length = 0.02;
   const Cavities cavities = scene.cavities();
-  State state = cavities.start();
+  State state = start(cavities);
   const double h = 0.1, drop = 400.0, pi = std::numbers::pi;
   const core::VecX p = Eigen::Vector2d(300.0, -100.0);
   const auto flow = [&](bool needle_in, bool pierced) {
-    state.edge[0].needle_in = needle_in;
-    state.edge[0].pierced = pierced;
-    return (V0 - cavities.fluid(state, p, {h, h, false}).volume[0]) / h;
+    state.conduit[0].needle_in = needle_in;
+    state.conduit[0].pierced = pierced;
+    return (V0 - cavity::fluid(cavities, state, p, {h, h, false}).volume[0]) / h;
   };
   const double along = pi * 0.0006 * 1e-12 / (6.0 * 2e-3 * 0.02) * drop;
   const double through = pi * std::pow(0.0003, 4) / (8.0 * 2e-3 * 0.02) * drop;
@@ -218,14 +218,14 @@ TEST(CavityNetwork, FlowsAlongTheNeedleAndThroughItsHole)
 TEST(CavityAlarm, TellsOfAChangeOfPressure)
 {
   Scene scene;
-  scene.settings.edges.clear();
+  scene.settings.conduits.clear();
   scene.settings.cavities[0].alarm = 300.0;
   const Cavities cavities = scene.cavities();
-  State state = cavities.start();
+  State state = start(cavities);
   const OwnedField u = scene.body.space.zero();
   const auto alarm = [&](double pressure, const core::TimeStep& now) {
     state.cavity[0].pressure = pressure;
-    return cavities.accept(state, u, cavities.shape(u), now)[0].alarm;
+    return accept(cavities, {u, cavities.shape(u), now}, state)[0].alarm;
   };
   EXPECT_FALSE(alarm(1000.0, core::TimeStep::at_start(0.1)));
   EXPECT_FALSE(alarm(1299.0, {0.1, 0.1, false}));
@@ -234,25 +234,25 @@ TEST(CavityAlarm, TellsOfAChangeOfPressure)
   EXPECT_TRUE(alarm(699.0, {0.4, 0.1, false}));
 }
 
-// The tip in the second void opens the edge; its channel is kept when the needle has gone.
+// The tip in the second void opens the conduit; its channel is kept when the needle has gone.
 TEST(CavityNetwork, AnEdgeOpensWhenItsNeedleIsInEveryCavityItJoins)
 {
   Scene scene;
-  scene.settings.edges[0].needle = 0;
+  scene.settings.conduits[0].needle = 0;
   const Cavities cavities = scene.cavities();
   const OwnedField u = scene.body.space.zero();
   const VoidPiece left{Vec3(0.015, 0.015, 0.015), 0.01}, right{Vec3(0.035, 0.015, 0.015), 0.02};
-  const State outside = cavities.advance(cavities.start(), 0.0, 0.1, {{}}, u);
-  EXPECT_FALSE(outside.edge[0].needle_in || outside.edge[0].pierced);
-  const State half = cavities.advance(outside, 0.1, 0.2, {{left}}, u);
-  EXPECT_FALSE(half.edge[0].needle_in || half.edge[0].pierced);
-  const State through = cavities.advance(half, 0.2, 0.3, {{left, right}}, u);
-  EXPECT_TRUE(through.edge[0].needle_in && through.edge[0].pierced);
-  EXPECT_EQ(through.edge[0].channel, 0.02);
-  const State gone = cavities.advance(through, 0.3, 0.4, {{}}, u);
-  EXPECT_FALSE(gone.edge[0].needle_in);
-  EXPECT_TRUE(gone.edge[0].pierced);
-  EXPECT_EQ(gone.edge[0].channel, 0.02);
+  const State outside = advance(cavities, start(cavities), {0.0, 0.1, {{}}}, u);
+  EXPECT_FALSE(outside.conduit[0].needle_in || outside.conduit[0].pierced);
+  const State half = advance(cavities, outside, {0.1, 0.2, {{left}}}, u);
+  EXPECT_FALSE(half.conduit[0].needle_in || half.conduit[0].pierced);
+  const State through = advance(cavities, half, {0.2, 0.3, {{left, right}}}, u);
+  EXPECT_TRUE(through.conduit[0].needle_in && through.conduit[0].pierced);
+  EXPECT_EQ(through.conduit[0].channel, 0.02);
+  const State gone = advance(cavities, through, {0.3, 0.4, {{}}}, u);
+  EXPECT_FALSE(gone.conduit[0].needle_in);
+  EXPECT_TRUE(gone.conduit[0].pierced);
+  EXPECT_EQ(gone.conduit[0].channel, 0.02);
 }
 
 TEST(CavityWalls, BelongToOneCavityEach)

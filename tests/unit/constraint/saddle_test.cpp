@@ -28,9 +28,9 @@ tissue::TissueSettings gel()
 Row row_at(const std::vector<int>& nodes, const Vec3& direction, double gap)
 {
   Row row;
-  row.anchor = {nodes, VecX::Constant(static_cast<Eigen::Index>(nodes.size()),
-                                      1.0 / static_cast<double>(nodes.size()))};
-  row.direction = direction.normalized();
+  const auto count = static_cast<Eigen::Index>(nodes.size());
+  row.tissue = {
+      {{nodes, VecX::Constant(count, 1.0 / static_cast<double>(count))}, direction.normalized()}};
   row.gap = gap;
   return row;
 }
@@ -42,12 +42,9 @@ Set some_rows(const mesh::Mesh& mesh)
   const std::vector<int> top = mesh::group_nodes(mesh, "z1");
   set.add(row_at({top[0], top[1]}, Vec3(1, 2, 0), 2e-4));
   set.add(row_at({top[2]}, Vec3(0, 1, 1), -1e-4));
-  for (double bound : {1e3, 1e-4}) {
-    Row row = row_at({top[3], top[4], top[5]}, Vec3(1, 0, bound), 3e-4);
-    row.kind = law::RowKind::box;
-    row.bound = bound;
-    set.add(row);
-  }
+  for (double bound : {1e3, 1e-4})
+    set.add(row_at({top[3], top[4], top[5]}, Vec3(1, 0, bound), 3e-4), law::Law::box(bound),
+            set.next_point());
   set.couplings() = {{2, 3, 0.01}, {2, 2, 0.02}, {3, 3, 0.02}};
   return set;
 }
@@ -99,10 +96,10 @@ struct Turned
   {
     MatX H = MatX::Zero(set.size(), dofs());
     for (int i = 0; i < set.size(); ++i) {
-      const Row& row = set.rows()[static_cast<std::size_t>(i)];
-      for (std::size_t a = 0; a < row.anchor.node.size(); ++a)
-        H.block<1, 3>(i, 3 * row.anchor.node[a]) +=
-            row.anchor.weight[static_cast<Eigen::Index>(a)] * row.direction.transpose();
+      for (const TissueTerm& term : set.rows()[static_cast<std::size_t>(i)].tissue)
+        for (std::size_t a = 0; a < term.anchor.node.size(); ++a)
+          H.block<1, 3>(i, 3 * term.anchor.node[a]) +=
+              term.anchor.weight[static_cast<Eigen::Index>(a)] * term.direction.transpose();
     }
     return H;
   }

@@ -31,8 +31,7 @@ MatX spd(Eigen::Index n, double phase)
 Row tissue_row(std::vector<int> nodes, const VecX& weights, const Vec3& direction, double gap)
 {
   Row row;
-  row.anchor = {std::move(nodes), weights};
-  row.direction = direction.normalized();
+  row.tissue = {{{std::move(nodes), weights}, direction.normalized()}};
   row.gap = gap;
   return row;
 }
@@ -44,17 +43,17 @@ Set hand_made()
   Set set;
   Row a = tissue_row({9, 4, 7, 12}, Eigen::Vector4d(0.1, 0.2, 0.0, 0.7), Vec3(1, 2, -1), 1e-3);
   a.body = 0;
-  a.lever = {{1, 0.5}, {4, -0.25}, {1, 0.125}};  // coefficients of one dof add up
+  a.on_body = {{1, 0.5}, {4, -0.25}, {1, 0.125}};  // coefficients of one dof add up
   Row b = tissue_row({4, 30}, Eigen::Vector2d(0.4, 0.6), Vec3(0, 1, 3), -2e-3);
   b.body = 1;
-  b.lever = {{0, 2.0}, {2, -1.0}};
+  b.on_body = {{0, 2.0}, {2, -1.0}};
   b.softness = 0.3;
   Row c;
   c.body = 0;
-  c.lever = {{2, 1.0}, {0, 4.0}};  // dofs 0 and 1 are held
+  c.on_body = {{2, 1.0}, {0, 4.0}};  // dofs 0 and 1 are held
   c.gap = 5e-4;
   Row d;
-  d.wide = set.add_wide(std::make_shared<solve::WideProbe>());
+  d.distributed = {{set.add_wide(std::make_shared<solve::WideProbe>())}};
   d.gap = -1e-4;
   for (const Row& row : {a, b, c, d}) set.add(row);
   set.couplings() = {{0, 2, 0.05}, {3, 3, 0.7}};
@@ -116,7 +115,8 @@ TEST(Rows, ProbeEveryNodeOfAnyWeightOnceAndInOrder)
 TEST(Rows, AnchorsTakeTheMeanOfTheirNodes)
 {
   const Set set = hand_made();
-  const Vec3 mean = set.rows()[1].anchor.mean([](int node) -> Vec3 { return Vec3(node, 1, 0); });
+  const Vec3 mean =
+      set.rows()[1].tissue.front().anchor.mean([](int node) -> Vec3 { return Vec3(node, 1, 0); });
   EXPECT_LT((mean - Vec3(0.4 * 4 + 0.6 * 30, 1, 0)).norm(), 1e-14);
 }
 
@@ -154,30 +154,29 @@ TEST(System, LeavesBodiesOutThatCannotMove)
 TEST(System, GivesEveryRowItsOwnLaw)
 {
   Set set;
-  for (int i = 0; i < 3; ++i) {
-    Row row = tissue_row({i}, VecX::Ones(1), Vec3::UnitX(), 0.0);
-    row.kind = std::array{law::RowKind::bilateral, law::RowKind::box,
-                          law::RowKind::push}[static_cast<std::size_t>(i)];
-    row.bound = 0.5 * i;
-    row.start = 0.1 * i;
-    row.point = 10 * i;
-    row.softness = i == 0 ? 1e-3 : 0.0;
-    row.relative_softness = i == 0 ? 0.5 : 0.0;
-    if (i == 1) row.normal = 2;
-    if (i == 1) row.friction = 0.3;
-    set.add(row);
-  }
-  const MatX C = spd(9, 0.4);
+  const auto row = [](int i) {
+    Row one = tissue_row({i}, VecX::Ones(1), Vec3::UnitX(), 0.0);
+    one.start = 0.1 * i;
+    return one;
+  };
+  Row first = row(0);
+  first.softness = 1e-3;
+  first.relative_softness = 0.5;
+  EXPECT_EQ(set.add(first), 0);
+  EXPECT_EQ(set.add({row(1), row(2), row(3)}, law::Law::cone(0.3, 2.0), 10), 1);
+  EXPECT_EQ(set.add(row(4), law::Law::follower(0, 0.7), set.next_point()), 4);
+  const MatX C = spd(15, 0.4);
   const System system(set, {});
-  const law::Problem problem = system.problem(system.compliance(C), VecX::Zero(9));
-  EXPECT_EQ(problem.kind,
-            (std::vector{law::RowKind::bilateral, law::RowKind::box, law::RowKind::push}));
-  EXPECT_EQ(problem.bound, VecX(Vec3(0.0, 0.5, 1.0)));
-  EXPECT_EQ(problem.start, VecX(Vec3(0.0, 0.1, 0.2)));
+  const law::Problem problem = system.problem(system.compliance(C), VecX::Zero(15));
+  ASSERT_EQ(problem.blocks.size(), 3U);
+  EXPECT_EQ(problem.blocks[0].law, law::Law::zero());
+  EXPECT_EQ(problem.blocks[1].law, law::Law::cone(0.3, 2.0));
+  EXPECT_EQ(problem.blocks[2].law, law::Law::follower(0, 0.7));
+  EXPECT_EQ(problem.blocks[1].end(), problem.blocks[2].first);
+  EXPECT_EQ(problem.blocks[1].point, 10);
+  EXPECT_EQ(problem.blocks[2].point, 11);
+  EXPECT_LT((problem.start - 0.1 * VecX::LinSpaced(5, 0.0, 4.0)).norm(), 1e-15);
   EXPECT_EQ(problem.start, set.starts());
-  EXPECT_EQ(problem.group, (std::vector<int>{0, 10, 20}));
-  EXPECT_EQ(problem.normal, (std::vector<int>{-1, 2, -1}));
-  EXPECT_EQ(problem.friction, VecX(Vec3(0.0, 0.3, 0.0)));
   EXPECT_NEAR(problem.softness[0], 1e-3 + 0.5 * C(0, 0), 1e-15);
   EXPECT_EQ(problem.softness[1], 0.0);
 }
@@ -276,9 +275,10 @@ TEST(System, OfATissueIsThatOfItsDenseOperator)
   VecX gap(set.size());
   for (int i = 0; i < set.size(); ++i) {
     const Row& row = set.rows()[static_cast<std::size_t>(i)];
-    for (std::size_t a = 0; a < row.anchor.node.size(); ++a)
-      H.block<1, 3>(i, 3 * row.anchor.node[a]) +=
-          row.anchor.weight[static_cast<Eigen::Index>(a)] * row.direction.transpose();
+    const TissueTerm& term = row.tissue.front();
+    for (std::size_t a = 0; a < term.anchor.node.size(); ++a)
+      H.block<1, 3>(i, 3 * term.anchor.node[a]) +=
+          term.anchor.weight[static_cast<Eigen::Index>(a)] * term.direction.transpose();
     gap[i] = row.gap;
   }
   for (int node : mesh::group_nodes(body.mesh, "z0")) H.middleCols<3>(3 * node).setZero();

@@ -80,6 +80,18 @@ TEST_F(OptionSource, OfOneSourceTheLastValueIsTaken)
 }
 
 // A dash before a digit begins no option, and a flag needs no value.
+// For one version, and it is told of; the present name given as well is the same option.
+TEST_F(OptionSource, OldNamesMeanThePresentOnes)
+{
+  const Invocation old = start({"-edges", "leak:a:outside", "-edge_leak_resistance", "1e9",
+                                "-conduit_leak_resistance", "2e9"});
+  EXPECT_EQ(old.given.at("conduits").value, "leak:a:outside");
+  EXPECT_EQ(old.given.at("conduit_leak_resistance").value, "2e9");
+  EXPECT_EQ(old.given.count("edges"), 0U);
+  EXPECT_EQ(old.outdated, (std::vector<std::string>{"edges", "edge_leak_resistance"}));
+  EXPECT_TRUE(start({"-conduits", "leak:a:outside"}).outdated.empty());
+}
+
 TEST_F(OptionSource, TellsNegativeNumbersFromNames)
 {
   const auto given =

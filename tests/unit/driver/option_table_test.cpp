@@ -66,7 +66,7 @@ TEST(OptionTable, OverridesStandBesideTheGeneralOption)
   for (const std::string& name : names) {
     const auto open = name.find('<');
     if (open == std::string::npos) continue;
-    if (name.rfind("boundary_", 0) == 0 || name.rfind("edge_", 0) == 0) continue;
+    if (name.rfind("boundary_", 0) == 0 || name.rfind("conduit_", 0) == 0) continue;
     std::string general = name;
     general.erase(open, name.find('>') + 2 - open);
     EXPECT_TRUE(names.count(general)) << name;

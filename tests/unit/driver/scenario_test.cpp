@@ -249,8 +249,8 @@ TEST_F(ScenarioTest, EmptiesTheVolumeThatACavityTakesOut)
                                   {"cavity_bladder_initial_pressure", "300"},
                                   {"cavity_density", "1000"},
                                   {"gravity", "0,0,-10"},
-                                  {"edges", "leak:bladder:outside"},
-                                  {"edge_leak_resistance", "1e9"}});
+                                  {"conduits", "leak:bladder:outside"},
+                                  {"conduit_leak_resistance", "1e9"}});
   EXPECT_EQ(scenario.mesh.volumes, (std::vector<std::string>{"beam"}));
   EXPECT_NEAR(mesh::quality(scenario.mesh).volume, 64e-6 - 8e-6, 1e-16);
   ASSERT_EQ(scenario.cavities.cavities.size(), 1U);
@@ -260,9 +260,9 @@ TEST_F(ScenarioTest, EmptiesTheVolumeThatACavityTakesOut)
   EXPECT_EQ(bladder.initial_pressure, 300.0);
   EXPECT_EQ(bladder.weight, Vec3(0, 0, -10000));
   EXPECT_TRUE(scenario.time.start_in_equilibrium);
-  ASSERT_EQ(scenario.cavities.edges.size(), 1U);
-  EXPECT_EQ(scenario.cavities.edges[0].from, 0);
-  EXPECT_EQ(scenario.cavities.edges[0].to, -1);
+  ASSERT_EQ(scenario.cavities.conduits.size(), 1U);
+  EXPECT_EQ(scenario.cavities.conduits[0].from, 0);
+  EXPECT_EQ(scenario.cavities.conduits[0].to, -1);
   expect_refused_option({{"cavities", "bladder"}}, "either a surface or a volume");
   expect_refused_option({{"cavities", "bladder"}, {"cavity_region", "core"}, {"cavity_law", "gsa"}},
                         "did you mean 'gas'");

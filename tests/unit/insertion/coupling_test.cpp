@@ -4,8 +4,10 @@
 #include <numbers>
 
 #include "constraint/system.hpp"
-#include "insertion/insertion.hpp"
+#include "insertion/channel.hpp"
+#include "insertion/coupling.hpp"
 #include "support/block.hpp"
+#include "support/problem.hpp"
 
 namespace trocar::insertion {
 namespace {
@@ -19,8 +21,8 @@ struct Inserted
         u{core::VecX::Zero(3 * mesh.node_count())},
         tissue(mesh, locator, u),
         needle(settings()),
-        insertion(mesh, locator, laws(friction, fit)),
-        state(insertion.start(needle))
+        ground(mesh, locator, laws(friction, fit)),
+        state(start(ground, needle))
   {
   }
   static needle::NeedleSettings settings()
@@ -44,7 +46,8 @@ struct Inserted
   law::Problem problem(double h)
   {
     constraint::Set set;
-    rows = insertion.add_rows(state, needle.initial().shaft, tissue, 0, h, set);
+    const needle::Shaft shaft = needle.initial().shaft;
+    rows = add_rows(ground, state, {shaft, tissue, 0, h}, set);
     const constraint::System system(set, {});
     const auto size = static_cast<Eigen::Index>(system.probes().size());
     return system.problem(system.compliance(1e-3 * core::MatX::Identity(size, size)),
@@ -56,7 +59,7 @@ struct Inserted
   fem::GlobalField u;
   Deformed tissue;
   needle::Needle needle;
-  Insertion insertion;
+  Ground ground;
   InsertionState state;
   CouplingRows rows;
 };
@@ -65,13 +68,13 @@ struct Inserted
 TEST(Tributary, BordersAreHalfWayBetweenThePoints)
 {
   Inserted one({2.0, 1.0, 0.0});
-  const core::VecX length = one.insertion.tributary_lengths(one.state).rowwise().sum();
+  const core::VecX length = tributary_lengths(one.mesh, one.state).rowwise().sum();
   ASSERT_EQ(length.size(), 4);
   const Eigen::Vector4d expected(0.006, 0.012, 0.012, 0.01);
   EXPECT_LT((length - expected).norm(), 1e-12);
-  const law::Problem problem = one.problem(0.01);
+  law::Problem problem = one.problem(0.01);
   for (std::size_t k = 0; k < 4; ++k)  // at rest: the static limit
-    EXPECT_NEAR(problem.bound[one.rows.points[k].axial],
+    EXPECT_NEAR(test::law_of(problem, one.rows.points[k].axial).upper,
                 2.0 * expected[static_cast<Eigen::Index>(k)], 1e-12);
 }
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "insertion/channel.hpp"
+#include "insertion/coupling.hpp"
 #include "insertion/deformed.hpp"
-#include "insertion/insertion.hpp"
 #include "support/block.hpp"
 
 namespace trocar::insertion {
@@ -225,8 +226,8 @@ TEST(Tributary, LengthsAddUpToTheDepthWhateverTheMesh)
   const Scene scene(shape);
   for (const PlacementSettings& placement :
        {PlacementSettings{}, raw, PlacementSettings{Placement::spacing, 0.0031, 0.3}}) {
-    const Insertion insertion(scene.mesh, scene.locator,
-                              {placement, {{{1, 1, 0}, {1, 1, 0}}}, 0.0, 1e-9});
+    const Ground ground(scene.mesh, scene.locator,
+                        {placement, {{{1, 1, 0}, {1, 1, 0}}}, 0.0, 1e-9});
     needle::NeedleSettings settings;
     settings.model = needle::Model::rigid;
     settings.section = {0.0005, 0.0, 2e11, 0.3};
@@ -234,11 +235,11 @@ TEST(Tributary, LengthsAddUpToTheDepthWhateverTheMesh)
     settings.motion.length = 0.2;
     for (double depth : {0.004, 0.0173, 0.03, 0.0587, 0.06, 0.09}) {
       settings.motion.inserted = depth;
-      const InsertionState state = insertion.start(needle::Needle(settings));
-      const core::MatX lengths = insertion.tributary_lengths(state);
-      EXPECT_NEAR(lengths.sum(), insertion.depth(state), 1e-12);
+      const InsertionState state = start(ground, needle::Needle(settings));
+      const core::MatX lengths = tributary_lengths(scene.mesh, state);
+      EXPECT_NEAR(lengths.sum(), insertion::depth(state), 1e-12);
       EXPECT_GE(lengths.minCoeff(), 0.0);
-      EXPECT_NEAR(insertion.depth(state),
+      EXPECT_NEAR(insertion::depth(state),
                   std::min(depth, 0.02) + std::clamp(depth - 0.04, 0.0, 0.02), 1e-9);
     }
   }

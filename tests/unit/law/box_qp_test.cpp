@@ -14,9 +14,9 @@ TEST(BoxQp, WarmStartedActiveSetNeedsFewFactorisations)
   const Problem problem = random_problem(30, 120, 11);
   Condensed condensed(problem);
   const BoxSolution cold =
-      active_set(condensed.S(), condensed.s(), condensed.bound(), condensed.start(), 1000);
+      active_set(condensed.S(), condensed.s(), condensed.bounds().F, condensed.start(), 1000);
   const BoxSolution warm =
-      active_set(condensed.S(), condensed.s(), condensed.bound(), cold.x, 1000);
+      active_set(condensed.S(), condensed.s(), condensed.bounds().F, cold.x, 1000);
   EXPECT_TRUE(cold.finished);
   EXPECT_LE(cold.factorisations, 15);
   EXPECT_LE(warm.factorisations, 2);
@@ -29,14 +29,15 @@ TEST(BoxQp, SetNewtonNeedsHardlyMoreThanOneFactorisationFromGoodSets)
     const Problem problem = random_problem(30, rank, 11);
     Condensed condensed(problem);
     const MatX& S = condensed.S();
-    const VecX &s = condensed.s(), &F = condensed.bound();
-    const BoxSolution cold = interior_point(S, s, F, condensed.start(), 1e-13, 100);
+    const VecX& s = condensed.s();
+    const Bounds& bounds = condensed.bounds();
+    const BoxSolution cold = interior_point(S, s, bounds, condensed.start(), 1e-13, 100);
     ASSERT_TRUE(cold.finished);
     EXPECT_LE(cold.factorisations, 20);
-    const BoxSolution warm = set_newton(S, s, F, cold.x, 1e-9, 6);
+    const BoxSolution warm = set_newton(S, s, bounds.F, cold.x, 1e-9, 6);
     EXPECT_TRUE(warm.finished);
     EXPECT_LE(warm.factorisations, rank == 120 ? 1 : 2);
-    EXPECT_LT(box_residual(S, s, F, warm.x), 1e-12);
+    EXPECT_LT(box_residual(S, s, bounds, warm.x), 1e-12);
   }
 }
 
@@ -46,12 +47,12 @@ TEST(BoxQp, SetNewtonGivesUpInsteadOfCycling)
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Problem problem = random_problem(30, 40, seed);
     Condensed condensed(problem);
-    const VecX& F = condensed.bound();
+    const VecX& F = condensed.bounds().F;
     const VecX wrong = condensed.s().cwiseSign().cwiseProduct(F);
     const BoxSolution answer = set_newton(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
     EXPECT_LE(answer.factorisations, 6);
     if (answer.finished)
-      EXPECT_LT(box_residual(condensed.S(), condensed.s(), F, answer.x), 1e-9);
+      EXPECT_LT(box_residual(condensed.S(), condensed.s(), condensed.bounds(), answer.x), 1e-9);
     else
       EXPECT_EQ(answer.x, wrong);
   }

@@ -78,23 +78,23 @@ TEST(MonotoneSpline, KeepsMonotony)
 
 TEST(Network, FlowsAndTheirDerivative)
 {
-  const std::vector<law::Edge> edges{{0, 1, 2.0, false, 0.0},
-                                     {1, -1, 0.5, false, 0.3},
-                                     {2, 0, 1.0, true, 0.0},
-                                     {-1, 2, 3.0, true, 0.0},
-                                     {-1, 0, 0.0, false, 0.7}};
+  const std::vector<law::Conduit> conduits{{0, 1, 2.0, false, 0.0},
+                                           {1, -1, 0.5, false, 0.3},
+                                           {2, 0, 1.0, true, 0.0},
+                                           {-1, 2, 3.0, true, 0.0},
+                                           {-1, 0, 0.0, false, 0.7}};
   const VecX p = Eigen::Vector3d(3.0, -1.0, 2.0);
-  const law::Flows flows = law::network_flows(edges, p);
-  EXPECT_DOUBLE_EQ(flows.edge[0], 8.0);
-  EXPECT_DOUBLE_EQ(flows.edge[1], -0.2);
-  EXPECT_DOUBLE_EQ(flows.edge[2], 0.0);  // valve against the drop
-  EXPECT_DOUBLE_EQ(flows.edge[3], 0.0);
+  const law::Flows flows = law::network_flows(conduits, p);
+  EXPECT_DOUBLE_EQ(flows.conduit[0], 8.0);
+  EXPECT_DOUBLE_EQ(flows.conduit[1], -0.2);
+  EXPECT_DOUBLE_EQ(flows.conduit[2], 0.0);  // valve against the drop
+  EXPECT_DOUBLE_EQ(flows.conduit[3], 0.0);
   EXPECT_DOUBLE_EQ(flows.inflow[0], -8.0 + 0.7);
   EXPECT_DOUBLE_EQ(flows.inflow.sum(), -(-0.2) + 0.7);  // what goes outside and comes from there
   for (int j = 0; j < 3; ++j) {
     VecX q = p;
     q[j] += 1e-6;
-    const VecX slope = (law::network_flows(edges, q).inflow - flows.inflow) / 1e-6;
+    const VecX slope = (law::network_flows(conduits, q).inflow - flows.inflow) / 1e-6;
     EXPECT_LT((slope + flows.conductance.col(j)).norm(), 1e-8);
   }
   EXPECT_LT((flows.conductance - flows.conductance.transpose()).norm(), 1e-15);
@@ -103,12 +103,12 @@ TEST(Network, FlowsAndTheirDerivative)
 // What flows is as dense as where it comes from: that much leaves there and arrives.
 TEST(Network, CarriesTheDensityItComesWith)
 {
-  const law::Edge tube{0, 1, 2.0, false, 0.0, 1.5, 0.8};
+  const law::Conduit tube{0, 1, 2.0, false, 0.0, 1.5, 0.8};
   for (double drop : {3.0, -3.0}) {
     const VecX p = Eigen::Vector2d(drop, 0.0);
     const law::Flows flows = law::network_flows({tube}, p);
     const double density = drop > 0.0 ? 1.5 : 0.8;
-    EXPECT_DOUBLE_EQ(flows.edge[0], 2.0 * drop);
+    EXPECT_DOUBLE_EQ(flows.conduit[0], 2.0 * drop);
     EXPECT_DOUBLE_EQ(flows.inflow[0], -density * 2.0 * drop);
     EXPECT_DOUBLE_EQ(flows.inflow[1], density * 2.0 * drop);
     EXPECT_DOUBLE_EQ(flows.conductance(0, 0), density * 2.0);

@@ -10,15 +10,17 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Problem rows(const MatX& W, const VecX& g, const std::vector<RowKind>& kind, const VecX& bound)
+Problem rows(const MatX& W, const VecX& g, const std::vector<Law>& laws)
 {
   Problem problem;
   problem.W = W;
   problem.g = g;
-  problem.kind = kind;
-  problem.bound = bound;
   problem.start = VecX::Zero(g.size());
-  for (int i = 0; i < static_cast<int>(g.size()); ++i) problem.group.push_back(i);
+  int first = 0;
+  for (const Law& law : laws) {
+    problem.blocks.push_back({first, law, first});
+    first = problem.blocks.back().end();
+  }
   return problem;
 }
 
@@ -32,7 +34,7 @@ TEST(Push, HasThreeStates)
       Settings settings;
       settings.method = method;
       const Multipliers m =
-          solve(rows(W, VecX::Constant(1, gap), {RowKind::push}, VecX::Constant(1, 1.0)), settings);
+          solve(rows(W, VecX::Constant(1, gap), {Law::interval(0.0, 1.0)}), settings);
       ASSERT_TRUE(m.converged) << m.why;
       EXPECT_NEAR(m.lambda[0], force, 1e-6);
       EXPECT_NEAR(m.delta[0], gap + 2e-3 * force, 1e-8);
@@ -46,8 +48,7 @@ TEST(Push, TakesAnyLimit)
   W << 2e-3, 0.5e-3, 0.5e-3, 1e-3;
   const VecX g = (VecX(2) << -1e-3, -2e-3).finished();
   for (double limit : {0.0, 1e-12, 0.05, 1e3, 1e12, 1e300, infinity}) {
-    const Problem problem =
-        rows(W, g, {RowKind::push, RowKind::box}, (VecX(2) << limit, limit).finished());
+    const Problem problem = rows(W, g, {Law::interval(0.0, limit), Law::box(limit)});
     const Multipliers m = solve(problem, {});
     ASSERT_TRUE(m.converged) << m.why;
     // Both stick: W λ = -g gives λ = (0, 2).
@@ -65,11 +66,8 @@ Problem contact(double coupling, double friction)
 {
   MatX W(2, 2);
   W << 1e-3, coupling, coupling, 1e-3;
-  Problem problem = rows(W, (VecX(2) << -1e-3, -5e-3).finished(), {RowKind::push, RowKind::box},
-                         (VecX(2) << infinity, 0.0).finished());
-  problem.normal = {-1, 0};
-  problem.friction = (VecX(2) << 0.0, friction).finished();
-  return problem;
+  return rows(W, (VecX(2) << -1e-3, -5e-3).finished(),
+              {Law::half_line(), Law::follower(0, friction)});
 }
 
 // Sliding: λ_t = μ λ_n and W_nn λ_n + W_nt λ_t = -g_n, so λ_n = 1 N / (1 + μ W_nt / W_nn).
@@ -96,6 +94,26 @@ TEST(FollowingBounds, SettleWhereTheyOvershoot)
   ASSERT_TRUE(m.converged) << m.why;
   EXPECT_NEAR(m.lambda[0], 1.0 / 2.35, 2e-6);
   EXPECT_GT(m.outer, 5);
+}
+
+// A follower on a held place does not keep another one from going half the way.
+TEST(FollowingBounds, SettleBesideOneThatNothingMoves)
+{
+  MatX W = MatX::Zero(3, 3);
+  W.topLeftCorner(2, 2) << 1e-3, 0.9e-3, 0.9e-3, 1e-3;
+  const Problem problem = rows(W, (VecX(3) << -1e-3, -5e-3, 0.0).finished(),
+                               {Law::half_line(), Law::follower(0, 1.5), Law::follower(0, 0.5)});
+  const Multipliers m = solve(problem, {});
+  ASSERT_TRUE(m.converged) << m.why;
+  EXPECT_NEAR(m.lambda[0], 1.0 / 2.35, 2e-6);
+  EXPECT_TRUE(std::isfinite(m.contraction));
+}
+
+// What cannot be borne is no solution: a gap against a set without an end.
+TEST(Push, AGapOfAHeldPlaceWithoutLimitIsAResidual)
+{
+  const Problem problem = rows(MatX::Zero(1, 1), VecX::Constant(1, -1e-3), {Law::half_line()});
+  EXPECT_DOUBLE_EQ(kkt_residual(problem, VecX::Zero(1)), 1e-3);
 }
 
 // Beyond what that mends they are refused, with the ratio.

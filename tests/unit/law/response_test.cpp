@@ -13,7 +13,6 @@ TEST(Response, IsTheChangeOfTheMultipliers)
   int slipping = 0;
   for (unsigned seed = 0; seed < 10; ++seed) {
     Problem problem = test::random_problem(6, 40, seed);
-    problem.normal.assign(problem.kind.size(), -1);
     if (seed % 2 == 1) problem.softness = VecX::Constant(problem.rows(), 1e-4);
     const Settings exact{.method = Method::automatic, .tolerance = 1e-13};
     const Multipliers before = solve(problem, exact);
@@ -22,11 +21,12 @@ TEST(Response, IsTheChangeOfTheMultipliers)
     moved.g += dg;
     const Multipliers after = solve(moved, exact);
     ASSERT_TRUE(before.converged && after.converged) << before.why << after.why;
-    ASSERT_TRUE(same_states(problem, before.lambda, after.lambda)) << seed;
+    ASSERT_TRUE(same_states(problem, before.lambda, after.lambda, 1e-13)) << seed;
     const VecX change = after.lambda - before.lambda;
-    EXPECT_LT((response(problem, before.lambda, dg) - change).norm(), 1e-5 * change.norm()) << seed;
+    EXPECT_LT((response(problem, before.lambda, dg, 1e-13) - change).norm(), 1e-5 * change.norm())
+        << seed;
     for (Eigen::Index i = 2; i < problem.rows(); i += 3)
-      slipping += std::abs(before.lambda[i]) >= problem.bound[i] ? 1 : 0;
+      slipping += std::abs(before.lambda[i]) >= 0.5 ? 1 : 0;
   }
   EXPECT_GT(slipping, 5);
 }

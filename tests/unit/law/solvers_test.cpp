@@ -55,10 +55,8 @@ TEST(Solvers, StickInsideTheBoxAndSlipOnIt)
 {
   Problem problem;
   problem.W = MatX::Identity(1, 1) * 2.0;
-  problem.kind = {RowKind::box};
-  problem.group = {0};
+  problem.blocks = {{0, Law::box(1.0), 0}};
   problem.start = VecX::Zero(1);
-  problem.bound = VecX::Constant(1, 1.0);
   for (Method method : {Method::pgs, Method::hybrid, Method::active_set, Method::interior_point}) {
     problem.g = VecX::Constant(1, -0.5);
     Multipliers answer = solve(problem, {.method = method});
@@ -90,26 +88,24 @@ TEST(Solvers, RowsThatNothingCanMoveGetWhatTheirGapAsksFor)
 {
   struct Case
   {
-    RowKind kind;
-    double gap, bound, start, lambda;
+    Law law;
+    double gap, start, lambda;
   };
-  const double open = std::numeric_limits<double>::infinity();
-  for (const Case& c : {Case{RowKind::box, 1e-3, 2.0, 0.5, -2.0},
-                        {RowKind::box, -1e-3, 2.0, 0.5, 2.0},
-                        {RowKind::box, 0.0, 2.0, 0.5, 0.5},
-                        {RowKind::box, 0.0, 2.0, 7.0, 2.0},
-                        {RowKind::push, 1e-3, 2.0, 0.5, 0.0},
-                        {RowKind::push, -1e-3, 2.0, 0.5, 2.0},
-                        {RowKind::push, 0.0, open, 0.5, 0.5},
-                        {RowKind::bilateral, 0.0, 0.0, 0.5, 0.5}})
+  for (const Case& c : {Case{Law::box(2.0), 1e-3, 0.5, -2.0},
+                        {Law::box(2.0), -1e-3, 0.5, 2.0},
+                        {Law::box(2.0), 0.0, 0.5, 0.5},
+                        {Law::box(2.0), 0.0, 7.0, 2.0},
+                        {Law::interval(0.0, 2.0), 1e-3, 0.5, 0.0},
+                        {Law::interval(0.0, 2.0), -1e-3, 0.5, 2.0},
+                        {Law::half_line(), 0.0, 0.5, 0.5},
+                        {Law::zero(), 0.0, 0.5, 0.5}})
     for (Method method : {Method::automatic, Method::hybrid, Method::pgs, Method::active_set,
                           Method::interior_point}) {
       Problem problem = random_problem(3, 20, 1);
       problem.W.row(0).setZero();
       problem.W.col(0).setZero();
-      problem.kind[0] = c.kind;
+      problem.blocks[0].law = c.law;
       problem.g[0] = c.gap;
-      problem.bound[0] = c.bound;
       problem.start[0] = c.start;
       const Multipliers answer =
           solve(problem, {.method = method, .tolerance = 1e-10, .max_iterations = 100000});
@@ -121,13 +117,11 @@ TEST(Solvers, RowsThatNothingCanMoveGetWhatTheirGapAsksFor)
 
 TEST(Solvers, AGapThatNothingCanCloseIsNotCalledMet)
 {
-  const double open = std::numeric_limits<double>::infinity();
-  for (RowKind kind : {RowKind::bilateral, RowKind::push}) {
+  for (const Law& law : {Law::zero(), Law::half_line()}) {
     Problem problem = random_problem(3, 20, 1);
     problem.W.row(4).setZero();
     problem.W.col(4).setZero();
-    problem.kind[4] = kind;
-    problem.bound[4] = open;
+    problem.blocks[4].law = law;
     problem.g[4] = -1e-3;
     const Multipliers answer = solve(problem, {});
     EXPECT_FALSE(answer.converged);
@@ -144,16 +138,10 @@ TEST(Solvers, FrictionOfAHeldPlaceFollowsItsNormalForce)
     problem.W.row(row).setZero();
     problem.W.col(row).setZero();
   }
-  problem.kind[0] = RowKind::push;
-  problem.bound[0] = 3.0;
+  problem.blocks[0].law = Law::interval(0.0, 3.0);
   problem.g[0] = -1e-4;
-  problem.kind[1] = RowKind::box;
+  problem.blocks[1].law = Law::follower(0, 0.5);
   problem.g[1] = 1e-4;
-  problem.normal.assign(9, -1);
-  problem.normal[1] = 0;
-  problem.friction = VecX::Zero(9);
-  problem.friction[1] = 0.5;
-  problem.bound[1] = 0.0;
   const Multipliers answer = solve(problem, {});
   ASSERT_TRUE(answer.converged) << answer.why;
   EXPECT_EQ(answer.lambda[0], 3.0);
@@ -166,9 +154,8 @@ TEST(Solvers, ContradictoryRowsAreNotCalledConverged)
   problem.W = MatX::Ones(2, 2);
   problem.g = VecX::Zero(2);
   problem.g[1] = 1e-3;  // the same row twice with different gaps
-  problem.kind = {RowKind::bilateral, RowKind::bilateral};
-  problem.group = {0, 1};
-  problem.bound = problem.start = VecX::Zero(2);
+  problem.blocks = {{0, Law::zero(), 0}, {1, Law::zero(), 1}};
+  problem.start = VecX::Zero(2);
   for (Method method : {Method::automatic, Method::pgs, Method::hybrid}) {
     const Multipliers answer = solve(problem, {.method = method});
     EXPECT_FALSE(answer.converged);
@@ -191,17 +178,20 @@ TEST(Solvers, StepNormStopsEarlierThanTheResidualAllows)
 TEST(Solvers, WhereAllRowsSlipTheBoxesNeedNoFactorisation)
 {
   Problem problem = random_problem(10, 40, 4);
-  problem.bound.setConstant(1e-3);  // so weak that nothing sticks
+  const auto weaken = [&](double bound) {
+    for (int i = 2; i < 30; i += 3) test::law_of(problem, i) = Law::box(bound);
+  };
+  weaken(1e-3);  // so weak that nothing sticks
   const Multipliers cold = solve(problem, {.tolerance = 1e-12});
   ASSERT_TRUE(cold.converged) << cold.why;
   problem.start = cold.lambda;
   problem.start[2] *= -1.0;  // one row slipped the other way
   problem.start[5] = 0.0;    // one row is new
-  problem.bound *= 1.1;      // all bounds grew
+  weaken(1.1e-3);            // all bounds grew
   const Multipliers warm = solve(problem, {.tolerance = 1e-12});
   EXPECT_TRUE(warm.converged) << warm.why;
   EXPECT_EQ(warm.iterations, 0);
-  for (Eigen::Index i = 2; i < 30; i += 3) EXPECT_EQ(std::abs(warm.lambda[i]), problem.bound[i]);
+  for (Eigen::Index i = 2; i < 30; i += 3) EXPECT_EQ(std::abs(warm.lambda[i]), 1.1e-3);
 }
 
 TEST(Solvers, SlippingRowsLieOnTheirBoundsWhateverTheMethod)

@@ -205,11 +205,11 @@ TEST(FrozenTube, LosesItsRoot)
   cavity::CavitySettings& one = scenario.cavities.cavities[0];
   one.solver = cavity::Solver::exact;
   one.caps = true;
-  cavity::EdgeSettings pump;
+  cavity::ConduitSettings pump;
   pump.name = "pump";
   pump.from = 0;
   pump.flow = 0.3 * cavity::Wall(scenario.mesh, "wall", true).volume();
-  scenario.cavities.edges = {pump};
+  scenario.cavities.conduits = {pump};
   scenario.time.step = 1.0;
   step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
   step::Outcome<step::Accepted> result = step::initial_state(simulation);

@@ -20,7 +20,7 @@ double compliance(step::Scene scenario)
   scenario.tissue.boundary.displacements.clear();
   scenario.time.end = 0.0;
   scenario.time.is_static = true;
-  scenario.cavities.edges.clear();
+  scenario.cavities.conduits.clear();
   for (cavity::CavitySettings& any : scenario.cavities.cavities) any.initial_pressure.reset();
   one.fluid.kind = law::FluidLaw::Kind::pressure;
   one.pressure.mean = 1e-3;
@@ -39,11 +39,11 @@ TEST(Network, LeakDecays)
     const double C = compliance(scenario);
     const double tau = 0.5;
     scenario.cavities.cavities[0].initial_pressure = 2000.0;
-    cavity::EdgeSettings leak;
+    cavity::ConduitSettings leak;
     leak.name = "leak";
     leak.from = 0;
     leak.resistance = tau / C;
-    scenario.cavities.edges = {leak};
+    scenario.cavities.conduits = {leak};
     scenario.time.end = 1.0;
     scenario.time.step = 1.0 / steps;
     const test::Run run = test::run(scenario);
@@ -53,7 +53,7 @@ TEST(Network, LeakDecays)
                   2000.0 / std::pow(1.0 + h / tau, n), 1e-8 * 2000.0);
     error.push_back(run.reports.back().cavities[0].pressure / 2000.0 - std::exp(-1.0 / tau));
     // A linear cavity's volume is V_0 + C p.
-    EXPECT_NEAR(run.states.back().cavities.edge[0].moved,
+    EXPECT_NEAR(run.states.back().cavities.conduit[0].moved,
                 C * (2000.0 - run.reports.back().cavities[0].pressure), 1e-7 * C * 2000.0);
   }
   EXPECT_NEAR(error[0] / error[1], 2.0, 0.1);
@@ -78,7 +78,7 @@ step::Scene two_cavities(Model model)
   return scenario;
 }
 
-// Compressible fluids at unlike pressures: what an edge moves is amount, so that Σ V ρ stays what
+// Compressible fluids at unlike pressures: what a conduit moves is amount, so that Σ V ρ stays what
 // it was, V the volume that the model takes; and both pressures meet.
 TEST(Network, AmountOfGasIsKept)
 {
@@ -91,12 +91,12 @@ TEST(Network, AmountOfGasIsKept)
         one.initial_pressure = 0.0;
       }
       scenario.cavities.cavities[0].initial_pressure = 3000.0;
-      cavity::EdgeSettings tube;
+      cavity::ConduitSettings tube;
       tube.name = "tube";
       tube.from = 0;
       tube.to = 1;
       tube.resistance = 4e9;
-      scenario.cavities.edges = {tube};
+      scenario.cavities.conduits = {tube};
       scenario.time.step = 0.1;
       scenario.time.end = 4.0;
       const test::Run run = test::run(scenario);
@@ -117,7 +117,7 @@ TEST(Network, AmountOfGasIsKept)
       for (std::size_t n = 1; n < run.states.size(); ++n)
         EXPECT_NEAR(amount(n), amount(0), 1e-13 * amount(0));
       const auto& last = run.reports.back().cavities;
-      EXPECT_GT(run.states.back().cavities.edge[0].moved, 5e-8);
+      EXPECT_GT(run.states.back().cavities.conduit[0].moved, 5e-8);
       EXPECT_NEAR(last[0].pressure, last[1].pressure, 5.0);
     }
 }
@@ -133,12 +133,12 @@ step::Scene bursting(double resistance)
     one.initial_pressure = 0.0;
   }
   scenario.cavities.cavities[0].initial_pressure = 2e4;
-  cavity::EdgeSettings tube;
+  cavity::ConduitSettings tube;
   tube.name = "tube";
   tube.from = 0;
   tube.to = 1;
   tube.resistance = resistance;
-  scenario.cavities.edges = {tube};
+  scenario.cavities.conduits = {tube};
   scenario.time.step = 0.1;
   scenario.time.end = 0.4;
   return scenario;
@@ -159,7 +159,7 @@ TEST(Network, AGasIsNotDrainedOnTheWayToItsPressure)
     };
     for (std::size_t n = 1; n < run.states.size(); ++n)
       EXPECT_NEAR(amount(n), amount(0), 1e-13 * amount(0));
-    EXPECT_GT(run.states.back().cavities.edge[0].moved, 0.0);
+    EXPECT_GT(run.states.back().cavities.conduit[0].moved, 0.0);
   }
 }
 
@@ -167,8 +167,8 @@ TEST(Network, AGasIsNotDrainedOnTheWayToItsPressure)
 TEST(Network, ADrainedGasIsCalledThat)
 {
   step::Scene scenario = bursting(4e9);
-  scenario.cavities.edges[0].to = -1;
-  scenario.cavities.edges[0].flow = 1e-3;
+  scenario.cavities.conduits[0].to = -1;
+  scenario.cavities.conduits[0].flow = 1e-3;
   try {
     test::run(scenario);
     FAIL() << "it was drained";
@@ -189,12 +189,12 @@ TEST(Network, TwoCavitiesMeet)
     scenario.cavities.cavities[1].initial_pressure = -100.0;
     step::Scene alone = scenario;
     const double C = compliance(alone);
-    cavity::EdgeSettings tube;
+    cavity::ConduitSettings tube;
     tube.name = "tube";
     tube.from = 0;
     tube.to = 1;
     tube.resistance = 1.0 / C;
-    scenario.cavities.edges = {tube};
+    scenario.cavities.conduits = {tube};
     scenario.time.end = 0.5;
     scenario.time.step = 0.05;
     const test::Run run = test::run(scenario);
@@ -202,7 +202,7 @@ TEST(Network, TwoCavitiesMeet)
     const double fallen = std::pow(1.0 + 0.05 * 2.0, -10);
     EXPECT_NEAR((last[0].pressure - last[1].pressure) / 200.0, fallen, 0.02 * fallen);
     const auto& first = run.reports.front().cavities;
-    const double moved = run.states.back().cavities.edge[0].moved;
+    const double moved = run.states.back().cavities.conduit[0].moved;
     if (model != Model::linear) {
       const double V0 = 1e-6;
       EXPECT_NEAR(first[0].volume - last[0].volume, moved, 3e-12 * V0);
@@ -216,17 +216,17 @@ TEST(Network, InjectionIsKept)
 {
   for (Model model : {Model::frozen, Model::follower}) {
     step::Scene scenario = test::cavity_scenario(5, 3, model, Solver::exact);
-    cavity::EdgeSettings pump;
+    cavity::ConduitSettings pump;
     pump.name = "pump";
     pump.to = 0;
     pump.flow = 2e-6;
     pump.flow_curve = core::parse_csv("time,factor\n0,0\n1,1\n2,0\n", "test");
-    scenario.cavities.edges = {pump};
+    scenario.cavities.conduits = {pump};
     scenario.time.step = 0.25;
     scenario.time.end = 2.0;
     const test::Run run = test::run(scenario);
     // Sum of backward Euler: 0.25 s · (0.25 + 0.5 + 0.75 + 1 + 0.75 + 0.5 + 0.25) = 1 s.
-    EXPECT_NEAR(run.states.back().cavities.edge[0].moved, 2e-6, 1e-18);
+    EXPECT_NEAR(run.states.back().cavities.conduit[0].moved, 2e-6, 1e-18);
     EXPECT_NEAR(run.reports.back().cavities[0].volume - run.reports.front().cavities[0].volume,
                 2e-6, 1e-11 * 2.7e-5);
     EXPECT_GT(run.reports.back().cavities[0].pressure, 100.0);
@@ -239,12 +239,12 @@ TEST(Network, ValveAndGas)
   step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
   scenario.cavities.cavities[0].fluid.kind = law::FluidLaw::Kind::gas;
   scenario.cavities.cavities[0].fluid.ambient = 1e4;
-  cavity::EdgeSettings valve;
+  cavity::ConduitSettings valve;
   valve.name = "valve";
   valve.from = 0;
   valve.resistance = 1e9;
   valve.valve = true;
-  scenario.cavities.edges = {valve};
+  scenario.cavities.conduits = {valve};
   scenario.time.step = 0.1;
   scenario.time.end = 2.0;
   press(scenario, 0.004);
@@ -253,10 +253,10 @@ TEST(Network, ValveAndGas)
   const test::Run run = test::run(scenario);
   double moved = 0.0;
   for (std::size_t n = 1; n < run.states.size(); ++n) {
-    const double now = run.states[n].cavities.edge[0].moved;
+    const double now = run.states[n].cavities.conduit[0].moved;
     EXPECT_GE(now, moved);
     const double p = run.reports[n].cavities[0].pressure;
-    EXPECT_NEAR(run.states[n].cavities.edge[0].flow, std::max(p, 0.0) / 1e9,
+    EXPECT_NEAR(run.states[n].cavities.conduit[0].flow, std::max(p, 0.0) / 1e9,
                 1e-9 * std::abs(p) / 1e9);
     moved = now;
   }

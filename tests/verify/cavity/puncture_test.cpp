@@ -26,31 +26,32 @@ TEST(WallPuncture, OpensTheEdge)
   scenario.cavities.cavities[0].initial_pressure = 1000.0;
   scenario.cavities.cavities[0].alarm = 300.0;
   scenario.time.start_in_equilibrium = true;
-  cavity::EdgeSettings leak;
+  cavity::ConduitSettings leak;
   leak.name = "leak";
   leak.from = 0;
   leak.needle = 0;
   leak.needle_radius = 0.0005;
   leak.gap = 2e-4;
   leak.hole_resistance = 1e8;
-  scenario.cavities.edges = {leak};
+  scenario.cavities.conduits = {leak};
   const test::Run run = test::run(scenario);
   const double V0 = 2.7e-5;
   bool was_in = false, was_out = false, alarmed = false;
   for (std::size_t n = 1; n < run.states.size(); ++n) {
-    const cavity::EdgeState& edge = run.states[n].cavities.edge[0];
+    const cavity::ConduitState& conduit = run.states[n].cavities.conduit[0];
     const double p = run.reports[n].cavities[0].pressure;
     const double first = run.reports[0].cavities[0].volume;
-    EXPECT_NEAR(first - run.reports[n].cavities[0].volume, edge.moved, 2e-12 * V0);
-    if (!edge.pierced) {
-      EXPECT_EQ(edge.flow, 0.0);
+    EXPECT_NEAR(first - run.reports[n].cavities[0].volume, conduit.moved, 2e-12 * V0);
+    if (!conduit.pierced) {
+      EXPECT_EQ(conduit.flow, 0.0);
       continue;
     }
-    const double gap = 6.0 * 1e-3 * edge.channel / (std::acos(-1.0) * 0.0005 * std::pow(2e-4, 3));
-    EXPECT_NEAR(edge.channel, 0.01, 0.002);
-    EXPECT_NEAR(edge.flow, p / (edge.needle_in ? gap : 1e8), 1e-9 * edge.flow);
-    was_in = was_in || edge.needle_in;
-    was_out = was_out || (was_in && !edge.needle_in);
+    const double gap =
+        6.0 * 1e-3 * conduit.channel / (std::acos(-1.0) * 0.0005 * std::pow(2e-4, 3));
+    EXPECT_NEAR(conduit.channel, 0.01, 0.002);
+    EXPECT_NEAR(conduit.flow, p / (conduit.needle_in ? gap : 1e8), 1e-9 * conduit.flow);
+    was_in = was_in || conduit.needle_in;
+    was_out = was_out || (was_in && !conduit.needle_in);
     alarmed = alarmed || run.reports[n].cavities[0].alarm;
     // In the void the shaft holds nothing: points stand in the first centimetre only.
     for (const auto& point : run.states[n].insertions[0].points)
@@ -61,7 +62,7 @@ TEST(WallPuncture, OpensTheEdge)
   EXPECT_LT(run.reports.back().cavities[0].pressure, 600.0);
 }
 
-// A needle that is through both walls at the start has opened its edge.
+// A needle that is through both walls at the start has opened its conduit.
 TEST(WallPuncture, NeedleThroughTheCavityAtTheStart)
 {
   step::Scene scenario = test::cavity_scenario(5, 3, Model::follower);
@@ -72,19 +73,19 @@ TEST(WallPuncture, NeedleThroughTheCavityAtTheStart)
   scenario.time.end = 0.04;
   scenario.time.start_in_equilibrium = true;
   scenario.cavities.cavities[0].initial_pressure = 500.0;
-  cavity::EdgeSettings leak;
+  cavity::ConduitSettings leak;
   leak.name = "leak";
   leak.from = 0;
   leak.needle = 0;
   leak.resistance = 1e9;
-  scenario.cavities.edges = {leak};
+  scenario.cavities.conduits = {leak};
   const test::Run run = test::run(scenario);
-  EXPECT_TRUE(run.states.back().cavities.edge[0].needle_in);
-  EXPECT_NEAR(run.states.back().cavities.edge[0].channel, 0.01, 1e-3);
-  EXPECT_GT(run.states.back().cavities.edge[0].flow, 0.0);
+  EXPECT_TRUE(run.states.back().cavities.conduit[0].needle_in);
+  EXPECT_NEAR(run.states.back().cavities.conduit[0].channel, 0.01, 1e-3);
+  EXPECT_GT(run.states.back().cavities.conduit[0].flow, 0.0);
 }
 
-// Two cavities in a row: an edge between them opens when the needle has come into the second one.
+// Two cavities in a row: a conduit between them opens when the needle has come into the second one.
 TEST(WallPuncture, ASeptumHoldsUntilItIsPierced)
 {
   step::Scene scenario = test::cavity_scenario(5, 1, Model::linear);
@@ -104,18 +105,18 @@ TEST(WallPuncture, ASeptumHoldsUntilItIsPierced)
   scenario.needles[0].motion.velocity = 0.05;
   scenario.needles[0].motion.depth = 0.045;
   scenario.needles[0].motion.length = 0.12;
-  cavity::EdgeSettings bridge;
+  cavity::ConduitSettings bridge;
   bridge.name = "bridge";
   bridge.from = 0;
   bridge.to = 1;
   bridge.needle = 0;
   bridge.resistance = 1e9;
-  scenario.cavities.edges = {bridge};
+  scenario.cavities.conduits = {bridge};
   const test::Run run = test::run(scenario);
   bool opened = false;
   for (std::size_t n = 1; n < run.states.size(); ++n) {
     const double depth = run.states[n].needles[0].shaft.tip().x();
-    const bool pierced = run.states[n].cavities.edge[0].pierced;
+    const bool pierced = run.states[n].cavities.conduit[0].pierced;
     if (depth < 0.039) {
       EXPECT_FALSE(pierced) << depth;
     }

@@ -2,6 +2,8 @@
 
 #include "constraint/system.hpp"
 #include "core/dense.hpp"
+#include "insertion/channel.hpp"
+#include "insertion/coupling.hpp"
 #include "support/body.hpp"
 #include "support/dense.hpp"
 #include "support/scene.hpp"
@@ -23,14 +25,14 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   const mesh::Locator locator(body.mesh);
   insertion::InsertionSettings coupling = scenario.insertion;
   coupling.placement.merge = 0.0;
-  const insertion::Insertion insertion(body.mesh, locator, coupling);
+  const insertion::Ground ground(body.mesh, locator, coupling);
   scenario.needles[0].motion.inserted = 0.04;
   const needle::Needle needle(scenario.needles[0]);
-  insertion::InsertionState state = insertion.start(needle);
+  insertion::InsertionState state = insertion::start(ground, needle);
   const fem::GlobalField u{core::VecX::Zero(3 * body.mesh.node_count())};
   constraint::Set set;
-  insertion.add_rows(state, needle.initial().shaft, insertion::Deformed(body.mesh, locator, u), 0,
-                     0.02, set);
+  const insertion::Deformed tissue(body.mesh, locator, u);
+  insertion::add_rows(ground, state, {needle.initial().shaft, tissue, 0, 0.02}, set);
   const double h = 0.02;
   const core::TimeStep now{h, h, false};
   const tissue::TissueState rest = body.tissue.at_rest();
@@ -50,12 +52,13 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   core::MatX H_n = core::MatX::Zero(set.size(), needle.dofs());
   for (int i = 0; i < set.size(); ++i) {
     const auto& row = set.rows()[static_cast<std::size_t>(i)];
+    const constraint::TissueTerm& term = row.tissue.front();
     for (int a = 0; a < 4; ++a)
       for (int k = 0; k < 3; ++k)
-        if (!body.tissue.fixed().fixed(row.anchor.node[static_cast<std::size_t>(a)], k))
-          H(i, 3 * row.anchor.node[static_cast<std::size_t>(a)] + k) +=
-              row.anchor.weight[a] * row.direction[k];
-    for (const auto& [dof, value] : row.lever) H_n(i, dof) += value;
+        if (!body.tissue.fixed().fixed(term.anchor.node[static_cast<std::size_t>(a)], k))
+          H(i, 3 * term.anchor.node[static_cast<std::size_t>(a)] + k) +=
+              term.anchor.weight[a] * term.direction[k];
+    for (const auto& [dof, value] : row.on_body) H_n(i, dof) += value;
   }
   const Eigen::Index free = needle.dofs() - 6;
   const core::MatX A_n = linear.A.bottomRightCorner(free, free);
@@ -78,19 +81,19 @@ TEST(PaperBeam, RowCountsOfTableOne)
                                       {0.0004, 752}}) {
     const mesh::Mesh mesh = test::block({49, 5, 5, Vec3(0.15, 0.02, 0.02)});
     const mesh::Locator locator(mesh);
-    const insertion::Insertion insertion(
-        mesh, locator, {{Placement::spacing, spacing, 0.3}, test::same({}), 0.0, 1e-9});
+    const insertion::Ground ground(mesh, locator,
+                                   {{Placement::spacing, spacing, 0.3}, test::same({}), 0.0, 1e-9});
     needle::NeedleSettings settings;
     settings.section = {0.0005, 0.0, 2e11, 0.3};
     settings.motion.entry = Vec3(0, 0.0093, 0.0107);
     settings.motion.length = 0.2;
     settings.motion.inserted = 0.15;
     const needle::Needle needle(settings);
-    insertion::InsertionState state = insertion.start(needle);
+    insertion::InsertionState state = insertion::start(ground, needle);
     const fem::GlobalField u{core::VecX::Zero(3 * mesh.node_count())};
     constraint::Set set;
-    insertion.add_rows(state, needle.initial().shaft, insertion::Deformed(mesh, locator, u), 0,
-                       0.02, set);
+    const insertion::Deformed tissue(mesh, locator, u);
+    insertion::add_rows(ground, state, {needle.initial().shaft, tissue, 0, 0.02}, set);
     EXPECT_EQ(set.size(), rows);
   }
 }

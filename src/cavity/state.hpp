@@ -1,0 +1,91 @@
+#pragma once
+
+#include <vector>
+
+#include "core/math.hpp"
+
+namespace trocar::cavity {
+
+using core::MatX;
+using core::Vec3;
+using core::VecX;
+
+/// State of one cavity. A value, equal on every rank.
+struct CavityState
+{
+  double pressure = 0.0;        ///< at the reference point of its wall [Pa]
+  double amount = 0.0;          ///< V_f: volume of the fluid at its reference pressure [m³]
+  double whole = 0.0;           ///< amount that a curve scales [m³]
+  double start_pressure = 0.0;  ///< [Pa]
+  double reference = 0.0;       ///< pressure at which the fluid takes its amount [Pa]
+  bool given = false;           ///< the pressure is given: always, or only at the start
+  bool held = false;            ///< the amount is held whatever the fluid (P-V curves)
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("pressure", "Pa", self.pressure);
+    v("amount", "m^3", self.amount);
+    v("whole", "m^3", self.whole);
+    v("start_pressure", "Pa", self.start_pressure);
+    v("reference", "Pa", self.reference);
+    v("given", "1", self.given);
+    v("held", "1", self.held);
+  }
+};
+
+struct ConduitState
+{
+  bool pierced = false;    ///< a needle came through
+  bool needle_in = false;  ///< and is still there
+  double channel = 0.0;    ///< tissue that it went through up to the wall [m]
+  double flow = 0.0;       ///< [m³/s]
+  double moved = 0.0;      ///< since the start [m³]
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("pierced", "1", self.pierced);
+    v("needle_in", "1", self.needle_in);
+    v("channel", "m", self.channel);
+    v("flow", "m^3/s", self.flow);
+    v("moved", "m^3", self.moved);
+  }
+};
+
+struct State
+{
+  std::vector<CavityState> cavity;
+  std::vector<ConduitState> conduit;
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("cavity", "", self.cavity);
+    v("conduit", "", self.conduit);
+  }
+};
+
+/// A stretch of a needle's path that lies in no tissue.
+struct VoidPiece
+{
+  Vec3 place;      ///< on the needle, in the stretch [m]
+  double channel;  ///< length of the path in tissue up to it [m]
+};
+
+/// Coordinates of all walls' vertices, each from its reference point [m].
+using Shape = std::vector<VecX>;
+
+/// What one cavity did in a step.
+struct CavityReport
+{
+  double pressure = 0.0, volume = 0.0;  ///< [Pa], [m³] of the deformed wall
+  double error = 0.0;                   ///< |V - V_law| / V_0, of the deformed wall
+  int iterations = 0;                   ///< linearisations or pressure updates
+  bool alarm = false;
+};
+
+}  // namespace trocar::cavity

@@ -1,0 +1,163 @@
+#include "insertion/channel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/failure.hpp"
+#include "insertion/tip_events.hpp"
+
+namespace trocar::insertion {
+namespace {
+
+bool passed(const mesh::Mesh& mesh, const InsertionState& state, std::size_t site, double arc)
+{
+  const Site& place = state.path.sites[site];
+  return arc > 0.0 && place.arc <= arc + arc_tolerance(mesh, place.tet);
+}
+
+void drop_points_ahead(const mesh::Mesh& mesh, InsertionState& state, double arc)
+{
+  while (!state.points.empty() &&
+         !passed(mesh, state, static_cast<std::size_t>(state.points.back().site), arc))
+    state.points.pop_back();
+}
+
+}  // namespace
+
+void add_points_behind(const mesh::Mesh& mesh, InsertionState& state, double arc,
+                       double needle_length)
+{
+  const double old_arc = std::max(state.tip_arc, 0.0);
+  state.tip_arc = arc;
+  while (state.points.size() < state.path.sites.size() &&
+         passed(mesh, state, state.points.size(), arc)) {
+    CouplingPoint point;
+    point.site = static_cast<int>(state.points.size());
+    point.stuck = false;
+    // The tip passed it within the step; it counts as having slipped the whole step, so that its
+    // friction is there at once and the force has no dent where points are born.
+    const double site_arc = state.path.sites[state.points.size()].arc;
+    point.needle_arc = needle_length + (site_arc - old_arc);
+    state.points.push_back(point);
+  }
+}
+
+InsertionState start(const Ground& ground, const needle::Needle& needle)
+{
+  const needle::BaseMotion& motion = needle.settings().motion;
+  InsertionState state;
+  if (!(motion.inserted > 0.0)) return state;
+  grow(state.path, motion.entry, ground.mesh, ground.locator, ground.settings.placement);
+  grow(state.path, motion.entry + motion.inserted * motion.direction, ground.mesh, ground.locator,
+       ground.settings.placement);
+  if (first_tet(state.path) < 0)
+    throw core::data_error("needle '" + needle.settings().name +
+                           "': the inserted part lies outside the tissue (check -needle_entry, "
+                           "-needle_direction and -needle_inserted)");
+  state.phase = Phase::inserted;
+  add_points_behind(ground.mesh, state, state.path.length(), 0.0);
+  for (CouplingPoint& point : state.points) point.stuck = true;
+  const fem::GlobalField undeformed{core::VecX::Zero(3 * ground.mesh.node_count())};
+  const Deformed tissue(ground.mesh, ground.locator, undeformed);
+  const needle::Shaft shaft = needle.initial().shaft;
+  for (CouplingPoint& point : state.points) {
+    const Site& site = state.path.sites[static_cast<std::size_t>(point.site)];
+    point.needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
+  }
+  return state;
+}
+
+namespace {
+
+InsertionState enter(const Ground& ground, const InsertionState& old,
+                     const needle::Shaft& predicted, const Deformed& tissue)
+{
+  // Takes the first entry: in the step the tip may have passed through a thin wall.
+  const auto entries = tissue.entries(predicted.x.front(), predicted.tip());
+  if (entries.empty()) return old;
+  const Vec3& entry = entries.front().X;
+  InsertionState next;
+  next.tip.punctures = old.tip.punctures;
+  next.path.first_id = old.path.first_id + static_cast<int>(old.path.sites.size());
+  if (ground.border(-1, ground.locator.tet_at(entry), entry) > 0.0) {
+    touch_surface(ground, next, entry, predicted);
+    next.tip.offset = tissue.position(next.tip.hold) - tissue.place(entry, next.tip.tet);
+    return next;
+  }
+  const auto inside = tissue.reference_place(predicted.tip(), entry);
+  const Vec3 X = inside
+                     ? *inside
+                     : tissue.reference_place_continued(predicted.tip(), entries.front().last_tet);
+  grow(next.path, entry, ground.mesh, ground.locator, ground.settings.placement);
+  grow_to(ground, next, X);
+  if (first_tet(next.path) < 0) return old;
+  next.phase = Phase::inserted;
+  press(ground, next, next.path.length(), predicted, tissue);
+  add_points_behind(ground.mesh, next, next.path.length(), predicted.length);
+  return next;
+}
+
+}  // namespace
+
+InsertionState advance(const Ground& ground, const InsertionState& old,
+                       const needle::Shaft& predicted, const Deformed& tissue)
+{
+  if (old.phase == Phase::contact) return old;  // what becomes of it the laws decide
+  if (first_tet(old.path) < 0) return enter(ground, old, predicted, tissue);
+
+  const Vec3 tip = predicted.tip() + lead(old, predicted, tissue);
+  const auto inside = tissue.reference_place(tip, old.path.vertex.back());
+  if (old.phase == Phase::withdrawn) {
+    if (!inside) return old;
+    // Beside the old channel the tip cuts a new one; the old one is then forgotten.
+    const double beside = distance(old.path, *inside);
+    if (beside > 0.3 * local_edge(ground.mesh, first_tet(old.path)))
+      return enter(ground, old, predicted, tissue);
+  }
+  // Beyond its tets the map of the nearest end is continued: the tip may be out at either side.
+  const bool behind = old.tip_arc <= 0.5 * old.path.length();
+  const int end_tet = behind ? first_tet(old.path) : last_tet(old.path);
+  const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
+  InsertionState next = old;
+  double arc = arc_nearest(next.path, X);
+  const double tolerance = arc_tolerance(ground.mesh, end_tet);
+  if (std::abs(arc - old.tip_arc) > tolerance) next.withdrawing = arc < old.tip_arc;
+  if (arc > next.path.length() + 1e-3 * tolerance) {
+    if (resistance(ground, old) <= 0.0) grow_to(ground, next, X);
+    arc = next.path.length();
+  }
+  // A tip outside the tissue in front of the entry has left the channel, whatever the map says.
+  if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
+  press(ground, next, arc, predicted, tissue);
+  if (next.tip.pressed) arc = next.path.length();
+  next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;
+  drop_points_ahead(ground.mesh, next, arc);
+  add_points_behind(ground.mesh, next, arc, predicted.length);
+  return next;
+}
+
+bool off_channel(const Ground& ground, const InsertionState& state, const needle::Shaft& shaft,
+                 const Deformed& tissue)
+{
+  if (state.phase == Phase::inserted) return false;
+  // The tip itself may touch the surface, and stand in the dent it makes.
+  double clear = 1e-3 * shaft.length;
+  if (state.phase == Phase::contact) {
+    const double edge = local_edge(ground.mesh, state.tip.tet);
+    clear = 2.0 * std::max(ground.settings.tip.radius, edge);
+  }
+  for (std::size_t e = 0; e + 1 < shaft.x.size(); ++e) {
+    const double begin = static_cast<double>(e) * shaft.element_length();
+    const double part = std::min(1.0, (shaft.length - clear - begin) / shaft.element_length());
+    if (part > 0.0 && tissue.meets(shaft.x[e], shaft.x[e] + part * (shaft.x[e + 1] - shaft.x[e])))
+      return true;
+  }
+  return false;
+}
+
+double depth(const InsertionState& state)
+{
+  return state.path.empty() ? 0.0 : tissue_length(state.path, state.tip_arc);
+}
+
+}  // namespace trocar::insertion

@@ -1,0 +1,33 @@
+#include "insertion/ground.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace trocar::insertion {
+
+Ground::Ground(const mesh::Mesh& mesh_of, const mesh::Locator& locator_of,
+               InsertionSettings settings_of)
+    : mesh(mesh_of),
+      locator(locator_of),
+      settings(std::move(settings_of)),
+      membranes(mesh_of, settings.puncture)
+{
+  settings.tip.cutting.resize(mesh.volumes.size(), 0.0);
+  const auto& forces = settings.tip.cutting;
+  resists = membranes.any() ||
+            std::any_of(forces.begin(), forces.end(), [](double f) { return f > 0.0; });
+}
+
+double Ground::cutting(int tet) const
+{
+  if (tet < 0) return 0.0;
+  return settings.tip.cutting[static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)])];
+}
+
+double Ground::border(int from, int to, const Vec3& X) const
+{
+  const double membrane = membranes.threshold(from, to, X);
+  return cutting(from) > 0.0 ? membrane : std::max(membrane, cutting(to));
+}
+
+}  // namespace trocar::insertion

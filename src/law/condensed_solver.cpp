@@ -1,0 +1,153 @@
+#include "law/condensed_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/stopwatch.hpp"
+#include "core/words.hpp"
+#include "law/condensed.hpp"
+#include "law/gauss_seidel.hpp"
+
+namespace trocar::law {
+
+namespace {
+
+constexpr int most_interior_steps = 100;
+constexpr int most_warm_sets = 6;      ///< factorisations to get there from the last step's sets
+constexpr int most_newton_steps = 12;  ///< with discs
+constexpr double box_tolerance = 0.1;  ///< of the tolerance: what the box rows may leave of it
+
+VecX take(const BoxSolution& answer, Multipliers& result)
+{
+  result.iterations += answer.factorisations;
+  return answer.x;
+}
+
+VecX interior(Condensed& condensed, const Settings& settings, Multipliers& result)
+{
+  return take(interior_point(condensed.S(), condensed.s(), condensed.bounds(), condensed.start(),
+                             box_tolerance * settings.tolerance,
+                             std::min(settings.max_iterations, most_interior_steps)),
+              result);
+}
+
+VecX walk(Condensed& condensed, const VecX& start, const Settings& settings, Multipliers& result)
+{
+  return take(active_set(condensed.S(), condensed.s(), condensed.bounds().F, start,
+                         settings.max_iterations),
+              result);
+}
+
+/// With discs: Newton, where it gets there and is not to be left out; else the interior point, and
+/// Newton from there.
+VecX discs(Condensed& condensed, const Settings& settings, Multipliers& result)
+{
+  const MatX& S = condensed.S();
+  const auto newton = [&](const VecX& start) {
+    return pair_newton(S, condensed.s(), condensed.bounds(), start, settings.tolerance,
+                       std::min(settings.max_iterations, most_newton_steps));
+  };
+  if (settings.method != Method::interior_point) {
+    const BoxSolution warm = newton(condensed.start());
+    const VecX x = take(warm, result);
+    if (warm.finished) return x;
+  }
+  return take(newton(interior(condensed, settings, result)), result);
+}
+
+/// All slipping as they did, which needs no S; or last step's sets, when they lead on; or the
+/// interior point, whose cost hardly depends on how many rows change.
+VecX automatic(Condensed& condensed, const Settings& settings, Multipliers& result)
+{
+  if (const std::optional<VecX> slipping = condensed.all_slipping()) return *slipping;
+  const MatX& S = condensed.S();
+  const VecX& s = condensed.s();
+  const BoxSolution warm =
+      set_newton(S, s, condensed.bounds().F, condensed.start(), settings.tolerance, most_warm_sets);
+  VecX x = take(warm, result);
+  if (!warm.finished || !(box_residual(S, s, condensed.bounds(), x) <= settings.tolerance))
+    x = interior(condensed, settings, result);
+  return x;
+}
+
+void judge(const Problem& problem, const Settings& settings, const VecX& lambda,
+           Multipliers& result)
+{
+  result.lambda = lambda;
+  result.residual = kkt_residual(problem, lambda);
+  result.converged = result.residual <= settings.tolerance;
+}
+
+/// Worst |δ| of the bilateral rows [m]: no box solver can mend it.
+double bilateral_residual(const Problem& problem, const VecX& lambda)
+{
+  const std::vector<int> rows = split_rows(problem).bilateral;
+  const VecX delta = problem.W * lambda + problem.g;
+  return rows.empty() ? 0.0 : delta(rows).cwiseAbs().maxCoeff();
+}
+
+/// Gauss-Seidel from where the others have stopped.
+void sweep_on(const Problem& problem, const Settings& settings, Multipliers& result)
+{
+  Problem again = problem;
+  again.start = result.lambda;
+  const Multipliers swept = solve_pgs(again, settings);
+  result.iterations += swept.iterations;
+  if (swept.residual < result.residual) judge(problem, settings, swept.lambda, result);
+}
+
+void solve_boxes(const Problem& problem, const Settings& settings, Condensed& condensed,
+                 Multipliers& result)
+{
+  const bool with_discs = !condensed.bounds().pairs.empty();
+  VecX lambda_f;
+  if (with_discs)
+    lambda_f = discs(condensed, settings, result);
+  else if (settings.method == Method::interior_point)
+    lambda_f = interior(condensed, settings, result);
+  else if (settings.method == Method::active_set)
+    lambda_f = walk(condensed, condensed.start(), settings, result);
+  else
+    lambda_f = automatic(condensed, settings, result);
+  judge(problem, settings, condensed.expand(lambda_f), result);
+  if (result.converged || settings.method != Method::automatic) return;
+  if (bilateral_residual(problem, result.lambda) > settings.tolerance) return;
+  if (with_discs) return sweep_on(problem, settings, result);
+  lambda_f = walk(condensed, lambda_f, settings, result);
+  judge(problem, settings, condensed.expand(lambda_f), result);
+}
+
+std::string complaint(const Problem& problem, const Settings& settings, const Multipliers& result)
+{
+  const double bilateral = bilateral_residual(problem, result.lambda);
+  const bool contradict = bilateral > settings.tolerance;
+  return "the constraints could not be met: residual " + core::shown(result.residual) +
+         " m after " + std::to_string(result.iterations) + " factorisations, rank " +
+         std::to_string(result.rank) + " of " + std::to_string(problem.rows()) + " rows" +
+         (contradict ? ", redundant rows contradict each other by " + core::shown(bilateral) + " m"
+                     : "");
+}
+
+}  // namespace
+
+Multipliers solve_condensed(const Problem& problem, const Settings& settings)
+{
+  Multipliers result;
+  core::Stopwatch watch;
+  Condensed condensed(problem);
+  result.factor_seconds = watch.seconds();
+  watch = {};
+  if (condensed.box_rows() == 0)
+    judge(problem, settings, condensed.expand(VecX()), result);
+  else
+    solve_boxes(problem, settings, condensed, result);
+  result.seconds = watch.seconds();
+  const int box_rank = condensed.box_rank();
+  result.rank = condensed.bilateral_rank() + box_rank;
+  result.condition = condensed.bilateral_condition();
+  result.nonunique = condensed.bilateral_redundant() || box_rank < condensed.box_rows();
+  if (!result.converged) result.why = complaint(problem, settings, result);
+  return result;
+}
+
+}  // namespace trocar::law
