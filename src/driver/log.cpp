@@ -21,13 +21,13 @@ bool Log::speaks() const
 
 void Log::plan() const
 {
-  const double bytes = model_->tissue.memory_bytes();
+  const double bytes = model_->tissue.factor().solver().memory_bytes();
   if (speaks() && bytes > 0.0) std::printf("tissue solver: about %.0f MB\n", 1e-6 * bytes);
 }
 
 void Log::set_up(double seconds) const
 {
-  const std::string solver = model_->tissue.describe_solver();
+  const std::string solver = model_->tissue.factor().solver().describe();
   if (!speaks()) return;
   const Scenario& scenario = *scenario_;
   const mesh::Mesh& mesh = scenario.mesh;

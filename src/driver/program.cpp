@@ -81,7 +81,7 @@ void run_scene(int argc, char** argv, const base::Comm& comm)
              invocation.outdated.front() + ", go with the next version");
   log.plan();
   step::prepare(model);
-  refuse_unused(model.tissue.describe_solver());
+  refuse_unused(model.tissue.factor().solver().describe());
   log.set_up(watch.seconds());
   if (scenario.check_only) {
     log.note("check passed: nothing was run");

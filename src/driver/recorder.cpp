@@ -67,7 +67,7 @@ Recorder::Recorder(const step::Model& model, const Scenario& scenario, const Inv
                    const std::vector<core::ResolvedOption>& options)
     : model_(&model), output_(&scenario.output), histories_(histories(scenario))
 {
-  const std::string solver = model.tissue.describe_solver();
+  const std::string solver = model.tissue.factor().solver().describe();
   base::on_root(model.space.comm(), [&] {
     std::vector<io::Series> series;
     for (const History& history : histories_) series.push_back(history.series);

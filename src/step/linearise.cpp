@@ -16,7 +16,7 @@ core::Outcome<core::Done> Newton::linearise()
   tissue::Tissue& tissue = model_->tissue;
   u_before_ = next_.tissue.u;
   std::optional<std::pair<State, cavity::Shape>> from;  // to begin again with the other tangent
-  if (tissue.exact_tangent()) from.emplace(next_, walls_);
+  if (tissue.tangent().exact()) from.emplace(next_, walls_);
   for (;;) {
     auto solution = solve::attempted([&] { return solve_once(); });
     if (solution) {
@@ -25,8 +25,8 @@ core::Outcome<core::Done> Newton::linearise()
     }
     // As a tangent without factor: a smaller step, or the other tangent, may do.
     const core::Refusal& refusal = solution.refusal();
-    const bool exact = tissue.exact_tangent();
-    if (tissue.drop_exact()) {
+    const bool exact = tissue.tangent().exact();
+    if (tissue.tangent().drop_exact()) {
       std::tie(next_, walls_) = *from;
       continue;
     }

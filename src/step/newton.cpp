@@ -16,7 +16,7 @@ Newton::Newton(Model& model, const Scheme& scheme, State first)
       next_(std::move(first)),
       walls_(model.walls(next_.tissue.u))
 {
-  model.tissue.begin_step();
+  model.tissue.tangent().begin_step();
 }
 
 /// Static equilibria and steps with pressures that follow the walls are iterated until everything
@@ -96,7 +96,7 @@ core::Outcome<core::Done> Newton::lead_on()
   const bool admissible = inverted_ < 0;
   double rest = admissible ? balance_.norm : unbalanced_before_;
   if (!admissible || rest > slow * unbalanced_before_) ++slow_;
-  if (slow_ >= most_slow) model_->tissue.take_exact();
+  if (slow_ >= most_slow) model_->tissue.tangent().take_exact();
   const bool overshoots = rest > std::max(unbalanced_before_, effort_.later);
   const bool may_shorten = effort_.most > 1 && effort_.measured;
   if ((!admissible || overshoots) && !(may_shorten && shorten(rest)))

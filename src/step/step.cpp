@@ -27,7 +27,7 @@ Outcome<Accepted> advance(Model& model, const State& old, const core::TimeStep& 
 Outcome<Accepted> initial_state(Model& model)
 {
   State state;
-  state.tissue = model.tissue.at_rest();
+  state.tissue = tissue::at_rest(model.space);
   for (const needle::Needle& needle : model.needles) {
     state.needles.push_back(needle.initial());
     state.insertions.push_back(insertion::start(*model.ground, needle));

@@ -35,9 +35,11 @@ double Tissue::least_rest(const Sizes& sizes, double part) const
 Balance Tissue::balance(const TissueState& past, const OwnedField& u, const TimeStep& step,
                         const OwnedField& more)
 {
-  if (!configured_.u || !space_->comm().all(configured_.u->value == u.value)) {
+  const bool known = configured_.u && configured_.exact == tangent_.exact();
+  if (!known || !space_->comm().all(configured_.u->value == u.value)) {
     configure(space_->with_ghosts(u), configured_.at);
     configured_.u = u;
+    configured_.exact = tangent_.exact();
   }
   Sizes sizes = no_sizes();
   const OwnedField pushed = forces(past, u, configured_.at, step, &sizes);

@@ -6,17 +6,18 @@ namespace trocar::tissue {
 /// `goes_on`: from the last linearisation, whose pressures then lead to those of the tangent.
 bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 {
-  const bool led = goes_on && exact_at_ && exact_tangent();
+  const bool led = goes_on && exact_at_ && tangent_.exact();
   core::VecX p;
   if (led) p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
-  const bool known = configured_.u && !exact_tangent() && configured_.u->value == iterate.value;
+  const bool known = configured_.u && configured_.exact == tangent_.exact() &&
+                     !tangent_.exact() && configured_.u->value == iterate.value;
   bool upright = true;  // else the balance would have been found where an element is folded
   known_ = space_->comm().all(known);
   if (known_)
     at_ = configured_.at;
   else
     upright = configure(space_->with_ghosts(iterate), at_);
-  exact_at_ = upright && settings_.exact_tangent();
+  exact_at_ = upright && tangent_.exact();
   if (exact_at_) u_at_ = iterate;
   if (led && upright) at_.p = std::move(p);
   return upright;
@@ -37,7 +38,7 @@ core::Outcome<core::Done> Tissue::make_factor(const Configuration& at)
     current_->rate.reset();
   else if (may_lag())
     current_->made = std::make_shared<const FactorOrigin>(
-        FactorOrigin{*current_->rate, at, settings_.exact_tangent()});
+        FactorOrigin{*current_->rate, at, tangent_.exact()});
   return made;
 }
 
@@ -45,7 +46,7 @@ core::Outcome<core::Done> Tissue::make_factor(const Configuration& at)
 /// the operator fails for good.
 core::Refusal Tissue::without_factor(const core::Refusal& refusal) const
 {
-  if (!settings_.exact_tangent()) throw core::solver_error(refusal.why);
+  if (!tangent_.exact()) throw core::solver_error(refusal.why);
   return {"the exact tangent has no factor (an instability, or too large a step): " + refusal.why};
 }
 
@@ -63,17 +64,13 @@ core::Outcome<core::Done> Tissue::go_on_with_factor(const TissueState& old, cons
     current_->rate.reset();
     return core::Done{};
   }
-  const Tangent now = settings_.tangent;
-  const auto with = [&](Tangent tangent) {
-    settings_.tangent = tangent;
-    elements_->take(tangent);
-  };
-  if (automatic_) with(old.factor->exact ? Tangent::exact : Tangent::rotated);
+  const Tangent now = tangent_.now();
+  if (tangent_.automatic()) tangent_.set(old.factor->exact ? Tangent::exact : Tangent::rotated);
   current_->rate = old.factor->rates;
   current_->at = old.factor->at;
   assemble(current_->at, *current_->rate);
   const auto made = make_factor(current_->at);
-  if (automatic_) with(now);
+  if (tangent_.automatic()) tangent_.set(now);
   if (!made) return made;
   current_->made = old.factor;
   current_->factor.set_age(old.age);
@@ -111,34 +108,6 @@ int Tissue::folded(const OwnedField& u) const
   if (mine < 0) mine = u.value.allFinite() ? none : 0;
   const auto first = static_cast<int>(-space_->comm().max(-static_cast<double>(mine)));
   return first == none ? -1 : first;
-}
-
-void Tissue::begin_step()
-{
-  dropped_ = false;
-  if (automatic_ && exact_tangent()) take(Tangent::rotated);
-}
-
-bool Tissue::take_exact()
-{
-  if (!automatic_ || dropped_ || exact_tangent()) return false;
-  take(Tangent::exact);
-  return true;
-}
-
-bool Tissue::drop_exact()
-{
-  if (!automatic_ || !exact_tangent()) return false;
-  dropped_ = true;
-  take(Tangent::rotated);
-  return true;
-}
-
-void Tissue::take(Tangent tangent)
-{
-  settings_.tangent = tangent;
-  elements_->take(tangent);
-  configured_.u.reset();  // it has what the other tangent needs
 }
 
 }  // namespace trocar::tissue

@@ -12,12 +12,12 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
       ledger_(&ledger),
       fixed_(dirichlet_set(settings_.boundary, mesh, space)),
       elements_(Elements::make(mesh, space, settings_)),
+      tangent_(settings_, *elements_),
       pattern_(space, elements_->cliques()),
       values_(pattern_),
       damped_by_stiffness_(
           std::any_of(settings_.materials.begin(), settings_.materials.end(),
                       [](const Material& m) { return m.rayleigh_stiffness > 0.0; })),
-      automatic_(settings_.model == Model::corotational && settings_.tangent == Tangent::automatic),
       weight_(space.zero())
 {
   elements_->add_weight(settings_.boundary.gravity, weight_);
@@ -244,11 +244,6 @@ OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const T
   OwnedField r = forces(old, u, at, step);
   fixed_.clear(r);
   return r;
-}
-
-std::string Tissue::describe_solver() const
-{
-  return factor().solver().describe();
 }
 
 void Tissue::prepare(const TimeStep& step)

@@ -13,6 +13,7 @@
 #include "tissue/balance.hpp"
 #include "tissue/boundary.hpp"
 #include "tissue/elements.hpp"
+#include "tissue/tangent_choice.hpp"
 
 namespace trocar::tissue {
 
@@ -76,6 +77,12 @@ struct TissueState
   }
 };
 
+/// Tissue that nothing has moved.
+inline TissueState at_rest(const fem::Space& space)
+{
+  return {space.zero(), space.zero(), {}, {}};
+}
+
 /// Energies at the end of a step and what went in and was lost in it [J].
 struct Work
 {
@@ -100,8 +107,6 @@ class Tissue
   Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
          core::Ledger& ledger);
 
-  TissueState at_rest() const { return {space_->zero(), space_->zero(), {}, {}}; }
-
   /// Linearises at `iterate` within the step that began at `old`, under loads that are linearised
   /// there as well. `goes_on`: within the step from the last linearisation. Linear tissue keeps one
   /// assembled and factored operator per distinct rates. Refused where an element is turned inside
@@ -114,13 +119,7 @@ class Tissue
   /// -1: none. Collective; equal on every rank.
   int folded(const OwnedField& u) const;
 
-  /// Tangents of `automatic`: every step begins with the rotated one, may take the exact one from
-  /// some linearisation on, and goes back for good when that has no factor. Each returns whether
-  /// anything changed.
-  void begin_step();
-  bool take_exact();
-  bool drop_exact();
-  bool exact_tangent() const { return settings_.exact_tangent(); }
+  TangentChoice& tangent() { return tangent_; }
 
   /// Writes down what the factor was made from and has served. Not collective.
   void remember_factor(TissueState& state) const;
@@ -166,13 +165,6 @@ class Tissue
   }
 
   const fem::Dirichlet& fixed() const { return fixed_; }
-  const mesh::Mesh& mesh() const { return *mesh_; }
-  const fem::Space& space() const { return *space_; }
-  std::string describe_solver() const;
-  double memory_bytes() const
-  {
-    return factor().solver().memory_bytes();
-  }  ///< estimate, 0: not ours [B]
   /// Makes the solver and its symbolic analysis, so that its memory is known before it is taken.
   /// Collective.
   void analyse();
@@ -209,7 +201,6 @@ class Tissue
                        const OwnedField& u, const Configuration& at, const TimeStep& step) const;
   Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
   Sizes no_sizes() const;
-  void take(Tangent tangent);
   /// Norm of what need not be balanced: a part of the sizes, and what rounding leaves [N].
   /// Collective.
   double least_rest(const Sizes& sizes, double part) const;
@@ -222,6 +213,7 @@ class Tissue
   core::Ledger* ledger_;
   fem::Dirichlet fixed_;
   std::unique_ptr<Elements> elements_;
+  TangentChoice tangent_;
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
   Configuration at_;       ///< of the present linearisation
@@ -230,13 +222,12 @@ class Tissue
   struct
   {
     std::optional<OwnedField> u;
+    bool exact = false;  ///< what an exact tangent needs is there
     Configuration at;
     Sizes sizes;
   } configured_;        ///< where the balance was looked at last: often the next step begins there
   bool known_ = false;  ///< the present linearisation is there
   bool damped_by_stiffness_;  ///< any of the tissue
-  bool automatic_;            ///< the tangent may change within a step
-  bool dropped_ = false;      ///< not to the exact one in this step
   OwnedField weight_;         ///< ∫ N_a ρ g of every node [N]
   std::vector<OwnedField> traction_;
   /// Owned dofs that are held, and by which displacement or, after these, support.

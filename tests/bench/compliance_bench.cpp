@@ -106,7 +106,7 @@ void set_up(const Bench& bench, test::Body& body, double h)
   body.tissue.analyse();
   body.tissue.prepare({h, h, false});
   bench.figure("first_operator", watch.seconds(), "s");
-  bench.figure("memory_estimate", body.tissue.memory_bytes(), "B");
+  bench.figure("memory_estimate", body.tissue.factor().solver().memory_bytes(), "B");
   bench.figure("memory_peak", resident_bytes("VmHWM:") - before, "B");
 }
 

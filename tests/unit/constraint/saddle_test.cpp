@@ -55,7 +55,7 @@ struct Turned
 {
   explicit Turned(bool with_rows, const Set* rows = nullptr)
       : body({4, 3, 3, Vec3(0.1, 0.08, 0.08), 0.2}, gel()),
-        rest(body.tissue.at_rest()),
+        rest(tissue::at_rest(body.space)),
         set(rows        ? *rows
             : with_rows ? some_rows(body.mesh)
                         : Set()),

@@ -260,7 +260,7 @@ TEST(System, OfATissueIsThatOfItsDenseOperator)
   settings.boundary.gravity = Vec3(0.0, 3.0, -9.81);
   test::Body body({4, 3, 3, Vec3(0.1, 0.08, 0.08), 0.2}, settings);
   const double h = 0.02;
-  const tissue::TissueState rest = body.tissue.at_rest();
+  const tissue::TissueState rest = tissue::at_rest(body.space);
   auto at = body.tissue.linearise(rest, rest.u, {h, h, false});
   const Set set = rows_on(body.mesh);
   const System system(set, {});

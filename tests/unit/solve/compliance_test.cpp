@@ -99,7 +99,7 @@ TEST_P(Compliance, ANewOperatorForgetsEveryColumn)
   auto settings = held(GetParam());
   settings.model = tissue::Model::corotational;
   test::Body body({3, 3, 3, core::Vec3(0.1, 0.1, 0.1)}, settings);
-  const tissue::TissueState rest = body.tissue.at_rest();
+  const tissue::TissueState rest = tissue::at_rest(body.space);
   body.tissue.linearise(rest, rest.u, {0.01, 0.01, false});
   solve::ComplianceReport report;
   body.tissue.factor().compliance().block({{62, 63}, {}}, report);
@@ -127,7 +127,7 @@ TEST_P(Compliance, FinishesAHalfSolutionWithForcesOnItsProbes)
 {
   test::Body body({4, 3, 3, core::Vec3(0.1, 0.08, 0.08), 0.2}, held(GetParam()));
   body.tissue.prepare({0.0, 0.01, false});
-  const tissue::TissueState rest = body.tissue.at_rest();
+  const tissue::TissueState rest = tissue::at_rest(body.space);
   const core::MatX inverse = dense_inverse(body, 0.01);
   const solve::WideProbe wide = wide_probe(body, 3);
   const fem::GlobalField load{core::VecX::NullaryExpr(
@@ -181,7 +181,7 @@ TEST(Reuse, CanBeTurnedOff)
     tissue::TissueSettings settings = held(provider);
     settings.reuse = solve::Reuse::none;
     test::Body body({3, 3, 3, core::Vec3(0.1, 0.1, 0.1)}, settings);
-    const tissue::TissueState rest = body.tissue.at_rest();
+    const tissue::TissueState rest = tissue::at_rest(body.space);
     solve::ComplianceReport report;
     for (int n = 1; n <= 3; ++n) {
       auto at = body.tissue.linearise(rest, rest.u, {0.01 * n, 0.01, false});
@@ -197,7 +197,7 @@ TEST(Reuse, CanBeTurnedOff)
 TEST(LinearTissue, OneOperatorPerDistinctStepLength)
 {
   test::Body body({2, 2, 2, core::Vec3(0.1, 0.1, 0.1)}, held(solve::Provider::automatic));
-  const tissue::TissueState rest = body.tissue.at_rest();
+  const tissue::TissueState rest = tissue::at_rest(body.space);
   for (double h : {0.01, 0.005, 0.01, 0.005, 0.01})
     body.tissue.linearise(rest, rest.u, {h, h, false});
   EXPECT_EQ(body.ledger.assemblies, 2);

@@ -85,7 +85,7 @@ Outcome two_steps(const ModelCase& one, solve::Provider provider)
   settings.boundary.gravity = core::Vec3(0, 0, -9.81);
   try {
     test::Body body({4, 2, 2, core::Vec3(0.04, 0.02, 0.02), 0.1}, settings);
-    TissueState state = body.tissue.at_rest();
+    TissueState state = tissue::at_rest(body.space);
     for (int n = 1; n <= 2; ++n) {
       const double h = 0.02 / n;  // other rates: linear tissue has a second operator as well
       auto motion = body.tissue.linearise(state, state.u, {h * n, h, false});

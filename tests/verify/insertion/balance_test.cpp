@@ -53,7 +53,7 @@ TEST(Balance, ActionEqualsReactionInEquilibrium)
     const step::Outcome<step::Accepted> start = step::initial_state(simulation);
     ASSERT_TRUE(start) << start.why();
     const fem::GlobalField unbalanced = simulation.space.gather(simulation.tissue.residual(
-        simulation.tissue.at_rest(), start->state.tissue.u, {0, 1, true}));
+        tissue::at_rest(simulation.space), start->state.tissue.u, {0, 1, true}));
     Vec3 on_tissue = Vec3::Zero();
     for (int node = 0; node < scenario.mesh.node_count(); ++node)
       on_tissue -= unbalanced.node(node);

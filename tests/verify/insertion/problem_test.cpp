@@ -35,7 +35,7 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   insertion::add_rows(ground, state, {needle.initial().shaft, tissue, 0, 0.02}, set);
   const double h = 0.02;
   const core::TimeStep now{h, h, false};
-  const tissue::TissueState rest = body.tissue.at_rest();
+  const tissue::TissueState rest = tissue::at_rest(body.space);
   auto at = body.tissue.linearise(rest, rest.u, now);
   const auto linear = needle.linearise(needle.initial(), needle.initial(), now);
   const constraint::System system(set, {{linear.held, linear.factor, linear.free_increment}});

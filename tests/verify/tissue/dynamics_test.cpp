@@ -19,7 +19,7 @@ TEST(Dynamics, FreeFallAndRayleighDecayAreBackwardEulers)
     settings.materials = {{4000.0, 0.3, 1000.0, 3.0, 0.0}};
     settings.boundary.gravity = Vec3(0, 0, -9.81);
     test::Body body({2, 2, 2, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
-    tissue::TissueState state = body.tissue.at_rest();
+    tissue::TissueState state = tissue::at_rest(body.space);
     const double h = 0.01;
     double v = 0.0, z = 0.0;
     for (int n = 1; n <= 5; ++n) {
@@ -46,7 +46,7 @@ TEST(Dynamics, DampingByMassTakesTheEnergyOfMotion)
   settings.materials = {{4000.0, 0.3, 1000.0, 3.0, 0.0}};
   test::Body body({2, 2, 2, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
   const double h = 0.01, mass = 1.0, square = 0.09 + 0.04 + 0.25;
-  const tissue::TissueState old = body.tissue.at_rest();
+  const tissue::TissueState old = tissue::at_rest(body.space);
   tissue::TissueState next = old;
   next.v = test::nodal(body, [](const Vec3&) { return Vec3(0.3, -0.2, 0.5); });
   const tissue::Work work = body.tissue.work(old, old, next, {h, h, false}, body.space.zero());
@@ -62,7 +62,7 @@ TEST(Dynamics, PrescribedMotionIsFollowedAndPushesItsNeighbours)
   settings.boundary.displacements = {{"z1", Vec3(0.004, std::nan(""), -0.002),
                                       core::parse_csv("time,factor\n0,0\n1,1\n", "ramp.csv")}};
   test::Body body({3, 3, 3, Vec3(0.1, 0.1, 0.1), 0.2}, settings);
-  tissue::TissueState state = body.tissue.at_rest();
+  tissue::TissueState state = tissue::at_rest(body.space);
   for (int n = 1; n <= 4; ++n) {
     auto motion = body.tissue.linearise(state, state.u, {0.1 * n, 0.1, false});
     const fem::OwnedField u = motion->alone();

@@ -52,7 +52,7 @@ TEST(RigidModes, CostNoForce)
     tissue::TissueSettings settings;
     settings.model = model;
     test::Body body({3, 3, 3, Vec3(0.1, 0.1, 0.1), 0.25}, settings);
-    const tissue::TissueState old = body.tissue.at_rest();
+    const tissue::TissueState old = tissue::at_rest(body.space);
     const auto force = [&](const fem::OwnedField& u) {
       const auto r = body.tissue.residual(old, u, at_rest);
       return body.comm.max(r.value.cwiseAbs().maxCoeff());
@@ -77,7 +77,7 @@ TEST(Traction, StretchesABarByItsModulus)
   settings.boundary.fixed = {{"x0", 1}, {"y0", 2}, {"z0", 4}};
   settings.boundary.tractions = {{"x1", Vec3(40.0, 0, 0), std::nullopt}};
   test::Body body({4, 2, 2, Vec3(0.2, 0.1, 0.1), 0.2}, settings);
-  const tissue::TissueState old = body.tissue.at_rest();
+  const tissue::TissueState old = tissue::at_rest(body.space);
   auto at = body.tissue.linearise(old, old.u, at_rest);
   const auto exact =
       nodal(body, [](const Vec3& X) { return Vec3(0.01 * X.x(), -0.003 * X.y(), -0.003 * X.z()); });
