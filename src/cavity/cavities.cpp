@@ -29,7 +29,7 @@ Cavities::Cavities(const mesh::Mesh& mesh, const fem::Space& space, Settings set
     }
     g0_.push_back(law::volume_gradient(wall.surface(), wall.undeformed()));
     ++ledger_->surface_passes;
-    auto probe = std::make_shared<solve::WideProbe>();
+    auto probe = std::make_shared<solve::DistributedFunctional>();
     if (one.model == Model::linear) *probe = {i, wall.to_nodes(g0_.back() / wall.area(), space)};
     undeformed_probe_.push_back(std::move(probe));
   }

@@ -48,7 +48,7 @@ class Cavities
   VecX gradient(int i, const Shape& shape) const;
   OwnedField unit_load(int i) const;  ///< g_0 [m²]: force of a unit pressure on the wall at rest
   /// The probe g_0 / area of a linear cavity.
-  std::shared_ptr<const solve::WideProbe> undeformed_probe(int i) const
+  std::shared_ptr<const solve::DistributedFunctional> undeformed_probe(int i) const
   {
     return undeformed_probe_[index(i)];
   }
@@ -69,7 +69,7 @@ class Cavities
   Settings settings_;
   std::vector<Wall> walls_;
   std::vector<VecX> g0_;  ///< volume gradient of the undeformed walls, by vertex [m²]
-  std::vector<std::shared_ptr<const solve::WideProbe>> undeformed_probe_;  ///< of linear cavities
+  std::vector<std::shared_ptr<const solve::DistributedFunctional>> undeformed_probe_;  ///< of linear cavities
   long long versions_ = 0;
 };
 

@@ -123,7 +123,7 @@ Miss miss(const Search& search, const VecX& change)
 }  // namespace
 
 core::Outcome<VecX> next_pressures(const Cavities& cavities, const State& state, const Shape& shape,
-                                   const PressureAnswers& answers, const TimeStep& now)
+                                   const PressureResponses& answers, const TimeStep& now)
 {
   if (proportional(cavities)) return proportional_step(cavities, state, shape, answers.gain, now);
   const std::vector<int> which = frozen(cavities, state);

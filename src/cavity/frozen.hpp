@@ -10,7 +10,7 @@
 namespace trocar::cavity {
 
 /// How tissue and rows answer to the pressures of frozen cavities.
-struct PressureAnswers
+struct PressureResponses
 {
   std::vector<OwnedField> per_p;  ///< displacement per unit of every one [m/Pa]
   VecX gain;                      ///< K_p of the proportional solver [Pa]
@@ -22,7 +22,7 @@ std::vector<int> frozen(const Cavities& cavities, const State& state);
 /// Next pressures of the frozen cavities from where the walls are [Pa]; refused where there are
 /// none. Collective.
 core::Outcome<VecX> next_pressures(const Cavities& cavities, const State& state, const Shape& shape,
-                                   const PressureAnswers& answers, const TimeStep& now);
+                                   const PressureResponses& answers, const TimeStep& now);
 void set_pressures(const std::vector<int>& which, const VecX& p, State& state);
 
 int most_updates(const Cavities& cavities);   ///< of pressures in one step

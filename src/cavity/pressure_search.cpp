@@ -5,7 +5,7 @@
 namespace trocar::cavity {
 
 /// How the tissue alone answers to the pressure of every frozen cavity, once for each operator.
-const PressureAnswers& PressureSearch::unit_pressure_responses(const State& state,
+const PressureResponses& PressureSearch::unit_pressure_responses(const State& state,
                                                                const TimeStep& now,
                                                                solve::LaggedFactor& factor)
 {
@@ -15,7 +15,7 @@ const PressureAnswers& PressureSearch::unit_pressure_responses(const State& stat
   // Pressures that are given at the start only join later.
   if (known != responses_.end() && known->second.per_p.size() == which.size()) return known->second;
   if (responses_.size() == most_kept) responses_.clear();
-  PressureAnswers answers{{}, VecX::Zero(static_cast<Eigen::Index>(which.size()))};
+  PressureResponses answers{{}, VecX::Zero(static_cast<Eigen::Index>(which.size()))};
   for (std::size_t k = 0; k < which.size(); ++k) {
     answers.per_p.push_back(factor.answer(cavities_->unit_load(which[k])));
     double& gain = answers.gain[static_cast<Eigen::Index>(k)];
@@ -27,11 +27,11 @@ const PressureAnswers& PressureSearch::unit_pressure_responses(const State& stat
 }
 
 /// The same when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
-PressureAnswers PressureSearch::with_rows(const constraint::Laws& laws,
-                                          const PressureAnswers& alone,
+PressureResponses PressureSearch::with_rows(const constraint::Laws& laws,
+                                          const PressureResponses& alone,
                                           solve::LaggedFactor& factor) const
 {
-  PressureAnswers answers = alone;
+  PressureResponses answers = alone;
   const constraint::System& system = laws.system();
   if (system.empty() || proportional(*cavities_)) return answers;
   for (OwnedField& w : answers.per_p) {
@@ -49,7 +49,7 @@ core::Outcome<constraint::Saddle> PressureSearch::solve(constraint::Laws& laws,
 {
   const constraint::System& system = laws.system();
   const OwnedField free = at.alone();
-  const PressureAnswers& alone = unit_pressure_responses(state, now, *at.factor);
+  const PressureResponses& alone = unit_pressure_responses(state, now, *at.factor);
   const std::vector<int> which = frozen(*cavities_, state);
   take_pressures(*cavities_, {}, {}, now, state);
   for (updates_ = 0;; ++updates_) {

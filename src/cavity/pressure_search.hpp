@@ -26,14 +26,14 @@ class PressureSearch
   int updates() const { return updates_; }  ///< of the pressures in the last search
 
  private:
-  const PressureAnswers& unit_pressure_responses(const State& state, const TimeStep& now,
+  const PressureResponses& unit_pressure_responses(const State& state, const TimeStep& now,
                                                  solve::LaggedFactor& factor);
-  PressureAnswers with_rows(const constraint::Laws& laws, const PressureAnswers& alone,
+  PressureResponses with_rows(const constraint::Laws& laws, const PressureResponses& alone,
                             solve::LaggedFactor& factor) const;
 
   const Cavities* cavities_;
   core::Ledger* ledger_;
-  std::map<core::Rates, PressureAnswers> responses_;  ///< of the tissue alone, by operator
+  std::map<core::Rates, PressureResponses> responses_;  ///< of the tissue alone, by operator
   int updates_ = 0;
 };
 

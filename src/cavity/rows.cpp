@@ -39,15 +39,15 @@ CavityRows add_rows(Cavities& cavities, const State& state, const End& at, const
     const CavitySettings& one = cavities.one(i);
     if (one.model == Model::frozen || state.cavity[index(i)].given) continue;
     const Wall& wall = cavities.wall(i);
-    std::shared_ptr<const solve::WideProbe> probe = cavities.undeformed_probe(i);
+    std::shared_ptr<const solve::DistributedFunctional> probe = cavities.undeformed_probe(i);
     if (one.model == Model::follower)
-      probe = std::make_shared<solve::WideProbe>(solve::WideProbe{
+      probe = std::make_shared<solve::DistributedFunctional>(solve::DistributedFunctional{
           i, wall.to_nodes(cavities.gradient(i, at.shape) / wall.area(), cavities.space()),
           cavities.next_version()});
     held.push_back(one.model == Model::follower ? law::volume(wall.surface(), at.shape[index(i)])
                                                 : linear_volume(cavities, i, at.u));
     constraint::Row row;
-    row.distributed = {{set.add_wide(std::move(probe))}};
+    row.distributed = {{set.add_functional(std::move(probe))}};
     row.start = state.cavity[index(i)].pressure * wall.area();
     set.add(std::move(row));
     rows.cavity.push_back(i);

@@ -23,7 +23,7 @@ struct LawReport
   int outer = 0;                           ///< most solves that state-dependent bounds took
   double contraction = 0.0;                ///< worst ratio of their last two changes
   bool nonunique = false;
-  std::vector<law::Trial> trials{};      ///< of the solvers compared
+  std::vector<law::BenchmarkResult> trials{};      ///< of the solvers compared
   solve::ComplianceReport compliance{};  ///< sums over the linearisations
   int passes = 0;                        ///< sweeps with the laws behind them
   double leftover_gap = 0.0;  ///< what the laws with a stale compliance leave of the gaps [m]
@@ -33,7 +33,7 @@ struct LawReport
 struct LawSettings
 {
   law::Settings solver;
-  std::vector<law::Contender> compare;  ///< solvers timed beside it
+  std::vector<law::BenchmarkCase> compare;  ///< solvers timed beside it
   core::Ledger* ledger = nullptr;
 };
 

@@ -35,7 +35,7 @@ int Set::add(Row row, const law::Law& law, int point)
   return add(std::move(one), law, point);
 }
 
-int Set::add_wide(std::shared_ptr<const solve::WideProbe> probe)
+int Set::add_functional(std::shared_ptr<const solve::DistributedFunctional> probe)
 {
   wide_.push_back(std::move(probe));
   return static_cast<int>(wide_.size()) - 1;

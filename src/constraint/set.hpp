@@ -68,8 +68,8 @@ struct Row
   int body = -1;  ///< index of the small body, -1: none
   std::vector<BodyTerm> on_body{};
   std::vector<DistributedTerm> distributed{};
-  double softness = 0.0;           ///< c of a compliant row of the law zero, δ = -c λ [m/N]
-  double relative_softness = 0.0;  ///< more softness, in units of the row's own W_ii
+  double compliance = 0.0;           ///< c of a compliant row of the law zero, δ = -c λ [m/N]
+  double relative_compliance = 0.0;  ///< more compliance, in units of the row's own W_ii
   double start = 0.0;              ///< [N]
 
   /// direction · u(anchor) - Σ coefficient · w_dof, the usual row of a needle.
@@ -95,17 +95,17 @@ class Set
   core::VecX starts() const;  ///< multipliers to start from (rows) [N]
 
   /// Adds a wide probe and gives its index, for `DistributedTerm::probe`.
-  int add_wide(std::shared_ptr<const solve::WideProbe> probe);
+  int add_functional(std::shared_ptr<const solve::DistributedFunctional> probe);
   /// What the rows probe: file nodes with a non-zero weight, ascending, and the wide probes, which
   /// live as long as the set.
   solve::Probes probes() const;
 
-  /// Rows that give way to each other's multipliers: δ_i grows by `softness` · λ_j and δ_j
+  /// Rows that give way to each other's multipliers: δ_i grows by `compliance` · λ_j and δ_j
   /// likewise [m/N]; i may be j. Positive semidefinite in all.
   struct Coupling
   {
     int i, j;
-    double softness;
+    double compliance;
   };
   std::vector<Coupling>& couplings() { return couplings_; }
   const std::vector<Coupling>& couplings() const { return couplings_; }
@@ -115,7 +115,7 @@ class Set
  private:
   std::vector<Row> rows_;
   std::vector<law::Block> blocks_;
-  std::vector<std::shared_ptr<const solve::WideProbe>> wide_;
+  std::vector<std::shared_ptr<const solve::DistributedFunctional>> wide_;
   std::vector<Coupling> couplings_;
 };
 

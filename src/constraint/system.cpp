@@ -45,7 +45,7 @@ Sparse rows_on_probes(const Set& set, const solve::Probes& probes)
   return matrix(set.size(), probes.size(), entries);
 }
 
-Sparse levers_of(const Set& set, int body, Eigen::Index dofs)
+Sparse jacobians_of(const Set& set, int body, Eigen::Index dofs)
 {
   Entries entries;
   for (int i = 0; i < set.size(); ++i) {
@@ -67,13 +67,13 @@ System::System(Set set, std::vector<SmallBody> bodies)
   Entries entries;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Eigen::Index dofs = bodies_[b].free_increment.size();
-    levers_.push_back(levers_of(set_, static_cast<int>(b), bodies_[b].held + dofs));
+    jacobians_.push_back(jacobians_of(set_, static_cast<int>(b), bodies_[b].held + dofs));
     if (dofs == 0) continue;
     // Of its own rows alone: those of other bodies do not move it.
     std::vector<int> mine;
     for (int i = 0; i < set_.size(); ++i)
       if (set_.rows()[static_cast<std::size_t>(i)].body == static_cast<int>(b)) mine.push_back(i);
-    const core::MatX all = levers_.back().rightCols(dofs);
+    const core::MatX all = jacobians_.back().rightCols(dofs);
     const core::MatX H = all(mine, Eigen::all).transpose();
     core::MatX W = H.transpose() * bodies_[b].factor.solve(H);
     W = 0.5 * (W + W.transpose()).eval();
@@ -90,8 +90,8 @@ void System::gather_compliance()
 {
   Entries entries;
   for (const Set::Coupling& c : set_.couplings()) {
-    entries.emplace_back(c.i, c.j, c.softness);
-    if (c.i != c.j) entries.emplace_back(c.j, c.i, c.softness);
+    entries.emplace_back(c.i, c.j, c.compliance);
+    if (c.i != c.j) entries.emplace_back(c.j, c.i, c.compliance);
   }
   own_ = of_bodies_ + matrix(set_.size(), set_.size(), entries);
 }
@@ -119,15 +119,15 @@ law::Problem System::problem(const core::MatX& W, const core::VecX& free) const
   problem.g = H_ * free;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Eigen::Index dofs = bodies_[b].free_increment.size();
-    if (dofs > 0) problem.g -= levers_[b].rightCols(dofs) * bodies_[b].free_increment;
+    if (dofs > 0) problem.g -= jacobians_[b].rightCols(dofs) * bodies_[b].free_increment;
   }
   problem.start = set_.starts();
   problem.blocks = set_.blocks();
-  problem.softness.resize(size());
+  problem.compliance.resize(size());
   for (int i = 0; i < size(); ++i) {
     const Row& row = set_.rows()[static_cast<std::size_t>(i)];
     problem.g[i] += row.gap;
-    problem.softness[i] = row.softness + row.relative_softness * W(i, i);
+    problem.compliance[i] = row.compliance + row.relative_compliance * W(i, i);
   }
   return problem;
 }
@@ -140,7 +140,7 @@ solve::OwnedField System::forces(const core::VecX& lambda, const fem::Space& spa
 
 core::VecX System::body_forces(const core::VecX& lambda, int body) const
 {
-  const Sparse& H = levers_[static_cast<std::size_t>(body)];
+  const Sparse& H = jacobians_[static_cast<std::size_t>(body)];
   if (lambda.size() == 0) return core::VecX::Zero(H.cols());
   return H.transpose() * lambda;
 }
@@ -149,7 +149,7 @@ double System::yielded(const core::VecX& a, const core::VecX& b) const
 {
   double sum = a.dot(own_ * b);
   for (int i = 0; i < size(); ++i)
-    sum += set_.rows()[static_cast<std::size_t>(i)].softness * a[i] * b[i];
+    sum += set_.rows()[static_cast<std::size_t>(i)].compliance * a[i] * b[i];
   return sum;
 }
 

@@ -10,7 +10,7 @@ namespace trocar::constraint {
 
 /// The rows of one linearisation with their maps, made once: Ĥ from the probed dofs of the tissue
 /// to the rows, H_n from the dofs of every small body, and the compliance that rows have of their
-/// own, whatever the tissue does: needles, networks, softness.
+/// own, whatever the tissue does: needles, networks, compliance.
 ///   δ = gap + Ĥ u - Σ H_n w.
 class System
 {
@@ -55,7 +55,7 @@ class System
   std::vector<SmallBody> bodies_;
   solve::Probes probes_;
   Sparse H_;
-  std::vector<Sparse> levers_;  ///< H_n, by body (rows x its dofs)
+  std::vector<Sparse> jacobians_;  ///< H_n, by body (rows x its dofs)
   Sparse of_bodies_, own_;      ///< H_n A_n⁻¹ H_nᵀ; with couplings
 };
 

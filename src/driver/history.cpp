@@ -157,14 +157,14 @@ void add_compared(const std::string& name, std::size_t i, List& list)
   const auto add = [&](const char* what, const char* unit, auto part) {
     list.number("constraint/compare/" + name + "/" + what, unit, [i, part](const Moment& now) {
       const auto& trials = now.report.trials;
-      return trials.empty() ? law::Trial{}.*part : trials[i].*part;
+      return trials.empty() ? law::BenchmarkResult{}.*part : trials[i].*part;
     });
   };
-  add("iterations", "1", &law::Trial::iterations);
-  add("failures", "1", &law::Trial::failures);
-  add("residual", "m", &law::Trial::residual);
-  add("seconds", "s", &law::Trial::seconds);
-  add("factor_seconds", "s", &law::Trial::factor_seconds);
+  add("iterations", "1", &law::BenchmarkResult::iterations);
+  add("failures", "1", &law::BenchmarkResult::failures);
+  add("residual", "m", &law::BenchmarkResult::residual);
+  add("seconds", "s", &law::BenchmarkResult::seconds);
+  add("factor_seconds", "s", &law::BenchmarkResult::factor_seconds);
 }
 
 /// What the step took.

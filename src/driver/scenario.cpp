@@ -142,10 +142,10 @@ law::Settings read_laws(Options& options)
 }
 
 /// METHOD[:NORM[:TOLERANCE]]; what is left out is as for the solver of the run.
-law::Contender read_contender(const std::string& entry, const law::Settings& laws)
+law::BenchmarkCase read_contender(const std::string& entry, const law::Settings& laws)
 {
   const std::vector<std::string> words = core::split(entry, ':');
-  law::Contender contender{entry, laws};
+  law::BenchmarkCase contender{entry, laws};
   const auto bad = [&](const std::string& why) {
     return core::option_error("option -constraint_compare: '" + entry + "': " + why);
   };
@@ -165,9 +165,9 @@ law::Contender read_contender(const std::string& entry, const law::Settings& law
   return contender;
 }
 
-std::vector<law::Contender> read_compare(Options& options, const law::Settings& laws)
+std::vector<law::BenchmarkCase> read_compare(Options& options, const law::Settings& laws)
 {
-  std::vector<law::Contender> contenders;
+  std::vector<law::BenchmarkCase> contenders;
   for (const std::string& entry : options.names("constraint_compare"))
     contenders.push_back(read_contender(entry, laws));
   return contenders;
@@ -220,7 +220,7 @@ void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
   scenario.needles = read_needles(options, scenario.mesh, locator, scenario.time.end, comm);
   const solve::Provider provider = scenario.tissue.provider;
   if (provider == solve::Provider::automatic || provider == solve::Provider::supernodal)
-    scenario.tissue.pinned = planned_nodes(scenario.needles, scenario.mesh, locator, layers);
+    scenario.tissue.ordered_last = planned_nodes(scenario.needles, scenario.mesh, locator, layers);
 }
 
 void add_radius_correction(Scenario& scenario)

@@ -36,7 +36,7 @@ void refuse_idle(const Scenario& scenario)
   refuse(scenario.insertion.radius_correction && scenario.needles.empty(),
          "insertion_radius_correction: there is no needle (-needles)");
   refuse(scenario.insertion.radius_correction && scenario.insertion.eta > 0.0,
-         "insertion_radius_correction: the eta law has a softness of its own (-insertion_eta)");
+         "insertion_radius_correction: the eta law has a compliance of its own (-insertion_eta)");
 }
 
 /// Places closer than anyone could want would only fill the memory with rows.

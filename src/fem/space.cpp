@@ -20,11 +20,11 @@ std::vector<int> exclusive_sum(const std::vector<int>& counts)
 }  // namespace
 
 Space::Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm,
-             int rings)
+             int overlap_layers)
     : comm_(comm), nodes_per_tet_(mesh.nodes_per_tet())
 {
   number_nodes(node_owner);
-  collect_local_tets(mesh, node_owner, rings);
+  collect_local_tets(mesh, node_owner, overlap_layers);
   plan_exchange(node_owner);
 }
 
@@ -46,12 +46,12 @@ void Space::number_nodes(const std::vector<int>& owner)
   for (int& start : starts_) start *= 3;
 }
 
-void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int rings)
+void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int overlap_layers)
 {
   const int me = comm_.rank();
   std::vector<char> near(owner.size(), 0);  // nodes of the tets so far, those owned here before any
   for (std::size_t node = 0; node < owner.size(); ++node) near[node] = owner[node] == me;
-  for (int ring = 0; ring < rings; ++ring) {
+  for (int layer = 0; layer < overlap_layers; ++layer) {
     const std::vector<char> inner = near;
     file_tet_.clear();
     for (int t = 0; t < mesh.tet_count(); ++t) {

@@ -42,13 +42,13 @@ struct GlobalField
 /// The dof map of linear or quadratic tets: three dofs per node; each rank owns the nodes the
 /// partition gives it, numbered contiguously by rank and in file order within a rank. A rank's
 /// local tets are all tets that touch a node it owns, so that it can assemble its own rows without
-/// communication; with two `rings` also those that touch a node of these, which elements that share
+/// communication; with two `overlap_layers` also those that touch a node of these, which elements that share
 /// their dilatation need.
 class Space
 {
  public:
   Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm,
-        int rings = 1);
+        int overlap_layers = 1);
 
   const base::Comm& comm() const { return comm_; }
   int owned() const { return owned_; }                               ///< nodes owned here
@@ -90,7 +90,7 @@ class Space
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   void number_nodes(const std::vector<int>& owner);
-  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int rings);
+  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int overlap_layers);
   void plan_exchange(const std::vector<int>& owner);
 
   base::Comm comm_;

@@ -98,7 +98,7 @@ std::vector<PointOnPath> points_on_path(const Ground& ground, const InsertionSta
   return points;
 }
 
-RadiusCorrection::Softness radius_softness(const Ground& ground, const Site& site, int body,
+RadiusCorrection::Compliance radius_compliance(const Ground& ground, const Site& site, int body,
                                            double length)
 {
   if (!ground.settings.radius_correction) return {};
@@ -122,7 +122,7 @@ struct Hold
   constraint::Row row(const Vec3& direction) const
   {
     auto made = constraint::Row::between({anchor, direction}, at.body,
-                                         needle::lever(at.shaft, on_shaft.s, direction));
+                                         needle::jacobian(at.shaft, on_shaft.s, direction));
     made.gap = direction.dot(x - on_shaft.x);
     return made;
   }
@@ -134,36 +134,36 @@ struct Hold
 };
 
 /// Two rows across the shaft. Returns the first.
-int add_lateral_rows(const Hold& hold, double softness, const Vec3& start, int point,
+int add_lateral_rows(const Hold& hold, double compliance, const Vec3& start, int point,
                      constraint::Set& set)
 {
   const int first = set.size();
   for (int k : {0, 1}) {
     constraint::Row row = hold.row(k == 0 ? hold.on_shaft.normal_1 : hold.on_shaft.normal_2);
-    row.softness = softness;
+    row.compliance = compliance;
     row.start = start[k];
     set.add(std::move(row), law::Law::zero(), point);
   }
   return first;
 }
 
-/// Dashpot (softness, 0: none) and dry friction on one axial row each; `softness`: of the tissue
+/// Dashpot (compliance, 0: none) and dry friction on one axial row each; `compliance`: of the tissue
 /// next to the shaft.
-void add_friction_rows(double dashpot, constraint::Row row, double softness, PointRows& mine,
+void add_friction_rows(double dashpot, constraint::Row row, double compliance, PointRows& mine,
                        constraint::Set& set)
 {
   if (dashpot > 0.0) {
-    row.softness = dashpot;
+    row.compliance = dashpot;
     mine.viscous = set.add(row, law::Law::zero(), mine.point);
-    row.softness = 0.0;
+    row.compliance = 0.0;
   }
   if (mine.bound > 0.0) mine.axial = set.add(row, law::Law::box(mine.bound), mine.point);
-  if (!(softness > 0.0)) return;
+  if (!(compliance > 0.0)) return;
   // Both laws push the same piece of shaft: its way through the tissue is that of their sum.
   for (int row_of_law : {mine.viscous, mine.axial})
-    if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, softness});
+    if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, compliance});
   if (mine.viscous >= 0 && mine.axial >= 0)
-    set.couplings().push_back({mine.viscous, mine.axial, softness});
+    set.couplings().push_back({mine.viscous, mine.axial, compliance});
 }
 
 PointRows add_point_rows(const Ground& ground, const PointOnPath& one, const Iterate& at,
@@ -174,22 +174,22 @@ PointRows add_point_rows(const Ground& ground, const PointOnPath& one, const Ite
   const Hold hold(one.site.anchor, at);
   if (one.lateral)
     mine.first =
-        add_lateral_rows(hold, radius_softness(ground, one.site, at.body, one.held).lateral,
+        add_lateral_rows(hold, radius_compliance(ground, one.site, at.body, one.held).lateral,
                          one.point.lambda, mine.point, set);
   constraint::Row row = hold.row(hold.on_shaft.tangent);
   row.start = one.point.lambda[2];
   row.gap = mine.slid = hold.on_shaft.s - one.point.needle_arc;
   const double eta = ground.settings.eta;
   if (eta > 0.0) {
-    row.relative_softness = (1.0 - eta) / eta;
+    row.relative_compliance = (1.0 - eta) / eta;
     mine.axial = set.add(std::move(row), law::Law::zero(), mine.point);
     return mine;
   }
   const Friction& friction = one.friction;
   mine.bound = one.point.stuck ? friction.static_limit : friction.dynamic_limit;
-  const double softness = radius_softness(ground, one.site, at.body, one.length).axial;
+  const double compliance = radius_compliance(ground, one.site, at.body, one.length).axial;
   add_friction_rows(friction.viscous > 0.0 ? at.h / friction.viscous : 0.0, std::move(row),
-                    softness, mine, set);
+                    compliance, mine, set);
   return mine;
 }
 
@@ -219,9 +219,9 @@ int add_lever_rows(const Ground& ground, const InsertionState& state, const Iter
   const std::optional<Site> tip = site_at(state.path, ground.mesh, held.arc + passed);
   if (!tip || tip->arc - held.arc < 0.5 * std::min(passed, half))
     return -1;  // the way is mostly through a void
-  const double softness =
-      radius_softness(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral;
-  return add_lateral_rows(Hold(tip->anchor, at), softness, Vec3::Zero(), set.next_point(), set);
+  const double compliance =
+      radius_compliance(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral;
+  return add_lateral_rows(Hold(tip->anchor, at), compliance, Vec3::Zero(), set.next_point(), set);
 }
 
 }  // namespace

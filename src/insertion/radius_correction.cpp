@@ -10,13 +10,13 @@ double radius_fit(bool quadratic, bool shared_dilatation)
   return shared_dilatation ? 0.4 : 0.54;
 }
 
-RadiusCorrection::Softness RadiusCorrection::at(int needle, int region, double edge,
+RadiusCorrection::Compliance RadiusCorrection::at(int needle, int region, double edge,
                                                 double length) const
 {
   const auto volume = static_cast<std::size_t>(region);
   const double r = radius[static_cast<std::size_t>(needle)];
   if (!(length > 0.0)) return {};
-  // ln q where q > 1, and down to nothing without a corner: rows of no softness beside soft ones
+  // ln q where q > 1, and down to nothing without a corner: rows of no compliance beside soft ones
   // would take the load of these.
   const double q = fit * edge / r;
   const double drop = 0.25 * std::log1p(q * q * q * q);

@@ -20,12 +20,12 @@ struct RadiusCorrection
   std::vector<double> poisson;  ///< by volume of the mesh
   double fit = 1.0;             ///< of the kind of tets, see `radius_fit`
 
-  struct Softness
+  struct Compliance
   {
     double axial = 0.0, lateral = 0.0;  ///< [m/N]
   };
   /// `length` of the line held by the row [m]; `edge`: see local_edge [m].
-  Softness at(int needle, int region, double edge, double length) const;
+  Compliance at(int needle, int region, double edge, double length) const;
 };
 
 /// fit of a kind of tets, measured on three meshes (docs/verification.md).

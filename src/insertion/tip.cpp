@@ -79,7 +79,7 @@ TipRows add_tip_rows(const TipState& tip, const TipLaw& law, const Iterate& at,
   const Vec3 apart = at.tissue.position(tip.hold) - tip.offset - end.x;
   const auto aim = [&](const Vec3& direction, double start) {
     auto row = constraint::Row::between({tip.hold, direction}, at.body,
-                                        needle::lever(at.shaft, at.shaft.length, direction));
+                                        needle::jacobian(at.shaft, at.shaft.length, direction));
     row.gap = direction.dot(apart);
     row.start = start;
     return row;

@@ -30,7 +30,7 @@ VecX minimise_free(const MatX& S, const VecX& s, const VecX& x, const std::vecto
 }
 
 /// One active-set iteration's state.
-struct Walk
+struct Search
 {
   VecX x;
   std::vector<bool> free;
@@ -38,46 +38,46 @@ struct Walk
 };
 
 /// Goes from x towards the free minimiser y, which leaves the box; false when it is not a number.
-bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, Walk& walk)
+bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, Search& search)
 {
   double fraction = std::numeric_limits<double>::infinity();
   int first = -1;
   for (int i = 0; i < static_cast<int>(y.size()); ++i) {
-    if (!walk.free[static_cast<std::size_t>(i)] || std::abs(y[i]) <= F[i]) continue;
-    const double bound = y[i] > walk.x[i] ? F[i] : -F[i];
-    const double reach = (bound - walk.x[i]) / (y[i] - walk.x[i]);
+    if (!search.free[static_cast<std::size_t>(i)] || std::abs(y[i]) <= F[i]) continue;
+    const double bound = y[i] > search.x[i] ? F[i] : -F[i];
+    const double reach = (bound - search.x[i]) / (y[i] - search.x[i]);
     if (reach < fraction) {
       fraction = reach;
       first = i;
     }
   }
   if (first < 0) return false;
-  VecX met = walk.x + fraction * (y - walk.x);
-  met[first] = y[first] > walk.x[first] ? F[first] : -F[first];
+  VecX met = search.x + fraction * (y - search.x);
+  met[first] = y[first] > search.x[first] ? F[first] : -F[first];
   const VecX projected = y.cwiseMax(-F).cwiseMin(F);
-  if (!walk.cautious && energy(S, s, projected) <= energy(S, s, met)) {
-    walk.x = projected;
+  if (!search.cautious && energy(S, s, projected) <= energy(S, s, met)) {
+    search.x = projected;
     for (int i = 0; i < static_cast<int>(y.size()); ++i)
-      if (std::abs(walk.x[i]) >= F[i]) walk.free[static_cast<std::size_t>(i)] = false;
+      if (std::abs(search.x[i]) >= F[i]) search.free[static_cast<std::size_t>(i)] = false;
   } else {
-    walk.x = met;
-    walk.free[static_cast<std::size_t>(first)] = false;
+    search.x = met;
+    search.free[static_cast<std::size_t>(first)] = false;
   }
   return true;
 }
 
 /// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal. A
-/// cautious walk frees one: that with the longest way to go or, where round-off leaves no row a
+/// cautious search frees one: that with the longest way to go or, where round-off leaves no row a
 /// positive pivot, the steepest.
-bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Walk& walk)
+bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Search& search)
 {
-  const VecX gradient = S * walk.x + s;
+  const VecX gradient = S * search.x + s;
   std::vector<int> wrong;
   int farthest = -1, steepest = -1;
   double way = 0.0, slope = 0.0;
   for (int i = 0; i < static_cast<int>(s.size()); ++i) {
-    if (walk.free[static_cast<std::size_t>(i)]) continue;
-    const double inward = walk.x[i] >= F[i] ? gradient[i] : -gradient[i];
+    if (search.free[static_cast<std::size_t>(i)]) continue;
+    const double inward = search.x[i] >= F[i] ? gradient[i] : -gradient[i];
     if (inward <= tolerance) continue;
     wrong.push_back(i);
     if (S(i, i) > 0.0 && inward / S(i, i) > way) {
@@ -90,10 +90,10 @@ bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Walk
     }
   }
   if (wrong.empty()) return false;
-  if (walk.cautious)
-    walk.free[static_cast<std::size_t>(farthest >= 0 ? farthest : steepest)] = true;
+  if (search.cautious)
+    search.free[static_cast<std::size_t>(farthest >= 0 ? farthest : steepest)] = true;
   else
-    for (int i : wrong) walk.free[static_cast<std::size_t>(i)] = true;
+    for (int i : wrong) search.free[static_cast<std::size_t>(i)] = true;
   return true;
 }
 
@@ -103,35 +103,35 @@ BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& 
                        int max_iterations)
 {
   BoxSolution result;
-  Walk walk{start, std::vector<bool>(static_cast<std::size_t>(s.size())), false};
+  Search search{start, std::vector<bool>(static_cast<std::size_t>(s.size())), false};
   for (int i = 0; i < static_cast<int>(s.size()); ++i)
-    walk.free[static_cast<std::size_t>(i)] = std::abs(start[i]) < F[i];
+    search.free[static_cast<std::size_t>(i)] = std::abs(start[i]) < F[i];
   const double tolerance = 1e-13 * (s.cwiseAbs().maxCoeff() + (S * F).cwiseAbs().maxCoeff());
   double best = std::numeric_limits<double>::max();  // infinity minus infinity would be a NaN
   for (int k = 0; k < max_iterations; ++k) {
     std::vector<int> free;
     for (int i = 0; i < static_cast<int>(s.size()); ++i)
-      if (walk.free[static_cast<std::size_t>(i)]) free.push_back(i);
+      if (search.free[static_cast<std::size_t>(i)]) free.push_back(i);
     if (!free.empty()) {
-      const VecX y = minimise_free(S, s, walk.x, free);
+      const VecX y = minimise_free(S, s, search.x, free);
       ++result.factorisations;
       bool leaves = false;
       for (int i : free) leaves = leaves || std::abs(y[i]) > F[i];
       if (leaves) {
-        if (!stop_at_bounds(S, s, F, y, walk)) break;
+        if (!stop_at_bounds(S, s, F, y, search)) break;
         continue;
       }
-      walk.x = y;
+      search.x = y;
     }
-    const double now = energy(S, s, walk.x);
-    if (now >= best - 1e-15 * std::abs(best)) walk.cautious = true;
+    const double now = energy(S, s, search.x);
+    if (now >= best - 1e-15 * std::abs(best)) search.cautious = true;
     best = std::min(best, now);
-    if (!release(S, s, F, tolerance, walk)) {
+    if (!release(S, s, F, tolerance, search)) {
       result.finished = true;
       break;
     }
   }
-  result.x = walk.x;
+  result.x = search.x;
   return result;
 }
 

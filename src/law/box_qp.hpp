@@ -32,7 +32,7 @@ struct BoxSolution
 /// a shift towards the start (proximal point) makes the minimum unique, so small that the gradient
 /// it leaves is at most `tolerance` / 5 [m]; what a regular S determines is exact. `x` is the start
 /// when not finished.
-BoxSolution set_newton(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
+BoxSolution primal_dual_active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
                        double tolerance, int max_iterations);
 
 /// The same with pairs (semismooth Newton on the natural map): a pair that slips stays on its

@@ -6,8 +6,8 @@
 
 namespace trocar::law {
 
-void compare(const Problem& problem, const std::vector<Contender>& contenders,
-             std::vector<Trial>& trials)
+void compare(const Problem& problem, const std::vector<BenchmarkCase>& contenders,
+             std::vector<BenchmarkResult>& trials)
 {
   trials.resize(contenders.size());
   for (std::size_t i = 0; i < contenders.size(); ++i) {

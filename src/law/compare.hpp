@@ -8,14 +8,14 @@
 namespace trocar::law {
 
 /// A method that solves every problem beside the one that drives the run.
-struct Contender
+struct BenchmarkCase
 {
   std::string name;  ///< as the user wrote it
   Settings settings;
 };
 
 /// What a contender needed; over several problems iterations and seconds add up.
-struct Trial
+struct BenchmarkResult
 {
   int iterations = 0;           ///< sweeps or factorisations
   int failures = 0;             ///< problems it did not solve
@@ -26,7 +26,7 @@ struct Trial
 
 /// Solves the problem with every contender and adds what it needed to `trials` (by contender;
 /// empty at first). Not converging is a figure like others.
-void compare(const Problem& problem, const std::vector<Contender>& contenders,
-             std::vector<Trial>& trials);
+void compare(const Problem& problem, const std::vector<BenchmarkCase>& contenders,
+             std::vector<BenchmarkResult>& trials);
 
 }  // namespace trocar::law

@@ -5,7 +5,7 @@
 
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
-#include "law/condensed.hpp"
+#include "law/schur_complement.hpp"
 #include "law/gauss_seidel.hpp"
 
 namespace trocar::law {
@@ -23,7 +23,7 @@ VecX take(const BoxSolution& answer, Multipliers& result)
   return answer.x;
 }
 
-VecX interior(Condensed& condensed, const Settings& settings, Multipliers& result)
+VecX interior(SchurComplement& condensed, const Settings& settings, Multipliers& result)
 {
   return take(interior_point(condensed.S(), condensed.s(), condensed.bounds(), condensed.start(),
                              box_tolerance * settings.tolerance,
@@ -31,7 +31,7 @@ VecX interior(Condensed& condensed, const Settings& settings, Multipliers& resul
               result);
 }
 
-VecX walk(Condensed& condensed, const VecX& start, const Settings& settings, Multipliers& result)
+VecX active_set_search(SchurComplement& condensed, const VecX& start, const Settings& settings, Multipliers& result)
 {
   return take(active_set(condensed.S(), condensed.s(), condensed.bounds().F, start,
                          settings.max_iterations),
@@ -40,7 +40,7 @@ VecX walk(Condensed& condensed, const VecX& start, const Settings& settings, Mul
 
 /// With discs: Newton, where it gets there and is not to be left out; else the interior point, and
 /// Newton from there.
-VecX discs(Condensed& condensed, const Settings& settings, Multipliers& result)
+VecX discs(SchurComplement& condensed, const Settings& settings, Multipliers& result)
 {
   const MatX& S = condensed.S();
   const auto newton = [&](const VecX& start) {
@@ -57,20 +57,20 @@ VecX discs(Condensed& condensed, const Settings& settings, Multipliers& result)
 
 /// All slipping as they did, which needs no S; or last step's sets, when they lead on; or the
 /// interior point, whose cost hardly depends on how many rows change.
-VecX automatic(Condensed& condensed, const Settings& settings, Multipliers& result)
+VecX automatic(SchurComplement& condensed, const Settings& settings, Multipliers& result)
 {
   if (const std::optional<VecX> slipping = condensed.all_slipping()) return *slipping;
   const MatX& S = condensed.S();
   const VecX& s = condensed.s();
   const BoxSolution warm =
-      set_newton(S, s, condensed.bounds().F, condensed.start(), settings.tolerance, most_warm_sets);
+      primal_dual_active_set(S, s, condensed.bounds().F, condensed.start(), settings.tolerance, most_warm_sets);
   VecX x = take(warm, result);
   if (!warm.finished || !(box_residual(S, s, condensed.bounds(), x) <= settings.tolerance))
     x = interior(condensed, settings, result);
   return x;
 }
 
-void judge(const Problem& problem, const Settings& settings, const VecX& lambda,
+void check_kkt(const Problem& problem, const Settings& settings, const VecX& lambda,
            Multipliers& result)
 {
   result.lambda = lambda;
@@ -93,10 +93,10 @@ void sweep_on(const Problem& problem, const Settings& settings, Multipliers& res
   again.start = result.lambda;
   const Multipliers swept = solve_pgs(again, settings);
   result.iterations += swept.iterations;
-  if (swept.residual < result.residual) judge(problem, settings, swept.lambda, result);
+  if (swept.residual < result.residual) check_kkt(problem, settings, swept.lambda, result);
 }
 
-void solve_boxes(const Problem& problem, const Settings& settings, Condensed& condensed,
+void solve_boxes(const Problem& problem, const Settings& settings, SchurComplement& condensed,
                  Multipliers& result)
 {
   const bool with_discs = !condensed.bounds().pairs.empty();
@@ -106,15 +106,15 @@ void solve_boxes(const Problem& problem, const Settings& settings, Condensed& co
   else if (settings.method == Method::interior_point)
     lambda_f = interior(condensed, settings, result);
   else if (settings.method == Method::active_set)
-    lambda_f = walk(condensed, condensed.start(), settings, result);
+    lambda_f = active_set_search(condensed, condensed.start(), settings, result);
   else
     lambda_f = automatic(condensed, settings, result);
-  judge(problem, settings, condensed.expand(lambda_f), result);
+  check_kkt(problem, settings, condensed.expand(lambda_f), result);
   if (result.converged || settings.method != Method::automatic) return;
   if (bilateral_residual(problem, result.lambda) > settings.tolerance) return;
   if (with_discs) return sweep_on(problem, settings, result);
-  lambda_f = walk(condensed, lambda_f, settings, result);
-  judge(problem, settings, condensed.expand(lambda_f), result);
+  lambda_f = active_set_search(condensed, lambda_f, settings, result);
+  check_kkt(problem, settings, condensed.expand(lambda_f), result);
 }
 
 std::string complaint(const Problem& problem, const Settings& settings, const Multipliers& result)
@@ -134,11 +134,11 @@ Multipliers solve_condensed(const Problem& problem, const Settings& settings)
 {
   Multipliers result;
   core::Stopwatch watch;
-  Condensed condensed(problem);
+  SchurComplement condensed(problem);
   result.factor_seconds = watch.seconds();
   watch = {};
   if (condensed.box_rows() == 0)
-    judge(problem, settings, condensed.expand(VecX()), result);
+    check_kkt(problem, settings, condensed.expand(VecX()), result);
   else
     solve_boxes(problem, settings, condensed, result);
   result.seconds = watch.seconds();

@@ -72,8 +72,8 @@ Problem restrict(const Problem& problem, const std::vector<const Block*>& blocks
     for (int row = block->first; row < block->end(); ++row) rows.push_back(row);
   }
   part.W = problem.W(rows, rows);
-  // A compliant row is a hard one in series with its softness.
-  if (problem.softness.size() > 0) part.W.diagonal() += problem.softness(rows);
+  // A compliant row is a hard one in series with its compliance.
+  if (problem.compliance.size() > 0) part.W.diagonal() += problem.compliance(rows);
   part.g = problem.g(rows);
   if (!interval.middle.isZero(0.0)) part.g += (problem.W * interval.middle)(rows);
   part.start = (problem.start - interval.middle)(rows);

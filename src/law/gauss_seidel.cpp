@@ -8,7 +8,7 @@
 #include "core/dense.hpp"
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
-#include "law/condensed.hpp"
+#include "law/schur_complement.hpp"
 
 namespace trocar::law {
 namespace {

@@ -12,7 +12,7 @@ VecX mobility(const Problem& problem)
   // What is prescribed has columns that are exactly zero. A relative cut would also take rows of
   // stiff bodies beside very soft ones.
   VecX w = problem.W.diagonal().cwiseMax(0.0);
-  if (problem.softness.size() > 0) w += problem.softness;
+  if (problem.compliance.size() > 0) w += problem.compliance;
   return w;
 }
 

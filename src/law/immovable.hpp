@@ -4,7 +4,7 @@
 
 namespace trocar::law {
 
-/// W_ii and softness of every row [m/N], exactly 0 where nothing can move the row: all its dofs are
+/// W_ii and compliance of every row [m/N], exactly 0 where nothing can move the row: all its dofs are
 /// prescribed, its gap is what it is.
 VecX mobility(const Problem& problem);
 

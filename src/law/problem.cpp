@@ -31,9 +31,9 @@ double unmet_gap(const Law& law, const Few& lambda, const Few& delta, double lea
 double kkt_residual(const Problem& problem, const VecX& lambda)
 {
   VecX delta = problem.W * lambda + problem.g, compliance = problem.W.diagonal();
-  if (problem.softness.size() > 0) {
-    delta += problem.softness.cwiseProduct(lambda);
-    compliance += problem.softness;
+  if (problem.compliance.size() > 0) {
+    delta += problem.compliance.cwiseProduct(lambda);
+    compliance += problem.compliance;
   }
   if (!delta.allFinite()) return std::nan("");
   double worst = 0.0;
@@ -116,7 +116,7 @@ VecX response(const Problem& problem, const VecX& lambda, const VecX& dg, double
   VecX change = VecX::Zero(problem.rows());
   if (held.empty()) return change;
   MatX W = problem.W(held, held);
-  if (problem.softness.size() > 0) W.diagonal() += problem.softness(held);
+  if (problem.compliance.size() > 0) W.diagonal() += problem.compliance(held);
   change(held) = -core::least_squares(W, dg(held));
   return change;
 }

@@ -24,9 +24,9 @@ struct Problem
   MatX W;                     ///< compliance (rows x rows) [m/N], symmetric positive semidefinite
   VecX g;                     ///< violation after free motion (rows) [m]
   std::vector<Block> blocks;  ///< in order, of all rows
-  /// Compliant rows: one of the law `zero` with softness c obeys δ = -c λ, a linear dashpot or
+  /// Compliant rows: one of the law `zero` with compliance c obeys δ = -c λ, a linear dashpot or
   /// spring (rows, or empty: all hard) [m/N].
-  VecX softness;
+  VecX compliance;
   VecX start;  ///< multipliers to start from (rows) [N]
 
   Eigen::Index rows() const { return g.size(); }

@@ -101,7 +101,7 @@ ShaftPoint project(const Shaft& shaft, const Vec3& p)
   return shaft_at(shaft, s);
 }
 
-std::vector<std::pair<int, double>> lever(const Shaft& shaft, double s, const Vec3& d)
+std::vector<std::pair<int, double>> jacobian(const Shaft& shaft, double s, const Vec3& d)
 {
   const Place place = place_of(shaft, s);
   const Hermite n = value(place.t);

@@ -51,6 +51,6 @@ ShaftPoint project(const Shaft& shaft, const Vec3& p);
 
 /// d · δx(s) as a sum over nodal increments (δx, δθ), dof 6 i + k of node i: the row H_n of a
 /// point at s in the direction d.
-std::vector<std::pair<int, double>> lever(const Shaft& shaft, double s, const Vec3& d);
+std::vector<std::pair<int, double>> jacobian(const Shaft& shaft, double s, const Vec3& d);
 
 }  // namespace trocar::needle

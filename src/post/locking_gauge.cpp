@@ -14,10 +14,10 @@ std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSetti
                                      const base::Comm& comm)
 {
   settings.model = tissue::Model::linear;
-  settings.pinned.clear();
+  settings.ordered_last.clear();
   core::Ledger ledger;
   const fem::Space space(mesh, mesh::partition_nodes(mesh, comm), comm,
-                         tissue::rings(settings.dilatation));
+                         tissue::overlap_layers(settings.dilatation));
   tissue::Tissue tissue(mesh, space, std::move(settings), ledger);
   tissue::require_supports(tissue.fixed(), mesh);
   tissue.prepare(core::TimeStep::at_start(1.0));

@@ -102,7 +102,7 @@ std::vector<int> homes(const WholePattern& whole, const Graph& neighbours)
     home[at(node)] = border ? in_interface : mine;
   }
   if (whole.ranks() > 1)
-    for (int node : whole.pinned) home[at(node)] = in_interface;
+    for (int node : whole.ordered_last) home[at(node)] = in_interface;
   return home;
 }
 
@@ -123,7 +123,7 @@ struct Builder
     result.domain.resize(at(whole.ranks()));
     result.source.resize(at(whole.ranks()));
     home = homes(whole, neighbours);
-    result.pinned = static_cast<int>(whole.pinned.size());
+    result.ordered_last = static_cast<int>(whole.ordered_last.size());
     number();
     if (static_cast<int>(result.interface.size()) > whole.most_shared) {
       for (Domain& domain : result.domain) domain = {};
@@ -213,7 +213,7 @@ struct Builder
     }
     if (domain.open > 0) tie_loose_ends(rank, closed);
     domain.pattern = lay_out(std::move(entries[at(rank)]), size, result.source[at(rank)]);
-    domain.order = order(rank, whole.ranks() > 1 ? std::vector<int>{} : whole.pinned);
+    domain.order = order(rank, whole.ranks() > 1 ? std::vector<int>{} : whole.ordered_last);
   }
 
   /// Ties a part of a domain that touches no open dof to one by a zero entry. So the open dofs
@@ -286,15 +286,15 @@ int WholePattern::owner(int node) const
 
 Dissection dissect(const WholePattern& whole)
 {
-  if (whole.pinned.empty()) return Builder(whole).result;
+  if (whole.ordered_last.empty()) return Builder(whole).result;
   WholePattern without = whole;
-  without.pinned.clear();
-  Builder plain(without), pinned(whole);
+  without.ordered_last.clear();
+  Builder plain(without), ordered_last(whole);
   plain.weigh();
-  pinned.weigh();
-  const bool worth = pinned.result.flops <= most_extra_flops * plain.result.flops;
-  const bool fits = static_cast<int>(pinned.result.interface.size()) <= whole.most_shared;
-  return std::move(worth && fits ? pinned.result : plain.result);
+  ordered_last.weigh();
+  const bool worth = ordered_last.result.flops <= most_extra_flops * plain.result.flops;
+  const bool fits = static_cast<int>(ordered_last.result.interface.size()) <= whole.most_shared;
+  return std::move(worth && fits ? ordered_last.result : plain.result);
 }
 
 }  // namespace trocar::solve

@@ -66,7 +66,7 @@ std::vector<int> KspCompliance::slots_of(const Probes& probes, std::vector<int>&
       slots.push_back(entry->second + axis);
     }
   }
-  for (const WideProbe* wide : probes.wide) {
+  for (const DistributedFunctional* wide : probes.wide) {
     const auto [entry, fresh] = slot_of_wide_.emplace(wide->id, static_cast<int>(columns_.size()));
     slots.push_back(entry->second);
     if (!fresh && wides_.at(wide->id).version == wide->version) continue;

@@ -70,7 +70,7 @@ class KspCompliance final : public IsolatedCompliance
   {
     int node = -1;  ///< file node, -1 for a wide probe
     int axis = 0;
-    const WideProbe* wide = nullptr;  ///< only valid while it is being built
+    const DistributedFunctional* wide = nullptr;  ///< only valid while it is being built
     bool fixed = false;               ///< zero by definition, never solved for
   };
 

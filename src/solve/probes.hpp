@@ -10,7 +10,7 @@ using fem::OwnedField;
 
 /// A probe that touches many dofs, such as the volume gradient of a cavity. Its column is kept
 /// until one of the same `id` comes with another `version`.
-struct WideProbe
+struct DistributedFunctional
 {
   long long id;
   OwnedField vector;
@@ -22,7 +22,7 @@ struct WideProbe
 struct Probes
 {
   std::vector<int> nodes;
-  std::vector<const WideProbe*> wide;
+  std::vector<const DistributedFunctional*> wide;
 
   int size() const { return static_cast<int>(3 * nodes.size() + wide.size()); }
 };

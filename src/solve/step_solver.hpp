@@ -68,7 +68,7 @@ struct StepSolverParts
   const std::vector<core::Vec3>& x;  ///< reference positions of all nodes in file order [m]
   /// File nodes that will be probed: put last in the factor, where their columns cost next to
   /// nothing.
-  const std::vector<int>& pinned;
+  const std::vector<int>& ordered_last;
   bool reuse;          ///< keep columns from step to step while the operator stays
   double most_memory;  ///< that solving ourselves may take [B], 0: a part of what is free
   bool turns;          ///< the operator turns: a copy of the factor in single precision as well

@@ -97,8 +97,8 @@ WholePattern SupernodalStepSolver::gather_pattern(const StepSolverParts& parts)
   for (int node = 0; node < space_->global(); ++node)
     for (int axis = 0; axis < 3; ++axis)
       whole.free.push_back((fixed_->axes_of_number(node) >> axis & 1U) == 0);
-  for (int node : parts.pinned) whole.pinned.push_back(space_->number_of_file(node));
-  std::sort(whole.pinned.begin(), whole.pinned.end());
+  for (int node : parts.ordered_last) whole.ordered_last.push_back(space_->number_of_file(node));
+  std::sort(whole.ordered_last.begin(), whole.ordered_last.end());
   return whole;
 }
 
@@ -107,7 +107,7 @@ Domain SupernodalStepSolver::hand_out(Dissection& dissection)
 {
   const base::Comm& comm = space_->comm();
   Domain domain;
-  std::vector<int> open{0}, pinned{dissection.pinned};
+  std::vector<int> open{0}, ordered_last{dissection.ordered_last};
   if (comm.root()) {
     for (int rank = 1; rank < comm.size(); ++rank) {
       Domain& other = dissection.domain[static_cast<std::size_t>(rank)];
@@ -124,8 +124,8 @@ Domain SupernodalStepSolver::hand_out(Dissection& dissection)
   }
   interface_ = std::move(dissection.interface);
   comm.broadcast(interface_);
-  comm.broadcast(pinned);
-  pinned_ = pinned.front();
+  comm.broadcast(ordered_last);
+  ordered_last_ = ordered_last.front();
   for (std::size_t k = 0; k < interface_.size(); ++k)
     interface_index_[interface_[k]] = static_cast<int>(k);
   index_.assign(static_cast<std::size_t>(space_->owned_dofs()), -1);
@@ -262,7 +262,7 @@ std::string SupernodalStepSolver::describe() const
 {
   return "supernodal cholesky (cholmod, factor " +
          std::to_string(static_cast<long long>(bytes_ / 1e6)) + " MB" +
-         (pinned_ > 0 ? ", " + std::to_string(pinned_) + " nodes pinned" : "") +
+         (ordered_last_ > 0 ? ", " + std::to_string(ordered_last_) + " nodes ordered last" : "") +
          (interface_.empty() ? ")"
                              : ", ranks share " + std::to_string(interface_.size()) + " dofs)");
 }

@@ -112,7 +112,7 @@ std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, Compliance
 
 void SupernodalStepSolver::add_wides(const Probes& probes, ComplianceReport& report)
 {
-  for (const WideProbe* wide : probes.wide) {
+  for (const DistributedFunctional* wide : probes.wide) {
     const auto known = wides_.find(wide->id);
     const bool is_fresh = known == wides_.end() || known->second.version != wide->version;
     ++(is_fresh ? report.built : report.reused);

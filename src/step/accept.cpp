@@ -91,13 +91,13 @@ Outcome<Accepted> accept(const Model& model, const State& old, const Scheme& sch
   const tissue::BoundaryConditions& boundary = model.scene.tissue.boundary;
   if (!boundary.displacements.empty() || !boundary.fixed.empty())
     report.holders =
-        model.tissue.holder_forces(scheme.past().tissue, next.tissue.u, now,
+        model.tissue.reactions(scheme.past().tissue, next.tissue.u, now,
                                    newton.solution().forces(model, next, newton.walls(), now));
   if (model.cavities) accept_cavities(model, now, newton);
   accept_needles(model, newton);
   model.tissue.remember_factor(next.tissue);
   if (model.scene.time.second_order && !now.start)
-    next.before = Before{scheme.old_velocity(), {old.tissue.u, old.tissue.v}, old.needles};
+    next.before = PreviousStep{scheme.old_velocity(), {old.tissue.u, old.tissue.v}, old.needles};
   if (model.scene.energy) next.energy = account(model, old, scheme, newton);
   if (auto refusal = collapsed(model.scene, report)) return std::move(*refusal);
   return Accepted{std::move(next), std::move(report)};

@@ -7,7 +7,7 @@ namespace trocar::step {
 Model::Model(const Scene& of, const base::Comm& comm)
     : scene(of),
       space(of.mesh, mesh::partition_nodes(of.mesh, comm), comm,
-            tissue::rings(of.tissue.dilatation)),
+            tissue::overlap_layers(of.tissue.dilatation)),
       tissue(of.mesh, space, of.tissue, ledger)
 {
   if (scene.time.is_static || scene.time.start_in_equilibrium)

@@ -24,7 +24,7 @@ struct StepReport : constraint::LawReport
 {
   std::vector<NeedleReport> needles;
   std::vector<cavity::CavityReport> cavities;
-  tissue::HolderForces holders;  ///< of prescribed displacements and supports
+  tissue::Reactions holders;  ///< of prescribed displacements and supports
   int pressure_updates = 0;      ///< of frozen cavities
   int linearisations = 0;
   double unbalanced = 0.0;  ///< what the end of the step leaves, see docs/theory.md section 1

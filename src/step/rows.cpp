@@ -53,8 +53,8 @@ bool gaps_closed(const Model& model, const Solution& solution, const Rows& here)
 {
   for (const law::Block& block : here.set.blocks()) {
     const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(block.first)];
-    const bool hard = block.law.set == law::Law::Set::zero && row.softness == 0.0 &&
-                      row.relative_softness == 0.0 && solution.mobility[block.first] > 0.0;
+    const bool hard = block.law.set == law::Law::Set::zero && row.compliance == 0.0 &&
+                      row.relative_compliance == 0.0 && solution.mobility[block.first] > 0.0;
     if (hard && std::abs(row.gap) > closed_gap(model)) return false;
   }
   return true;
@@ -93,10 +93,10 @@ double left_across(const Model& model, const Scheme& scheme, const State& state,
     const int i = block.first;
     const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(i)];
     const bool across = row.body >= 0 && block.law.set == law::Law::Set::zero &&
-                        row.relative_softness == 0.0 && solution.mobility[i] > 0.0;
+                        row.relative_compliance == 0.0 && solution.mobility[i] > 0.0;
     if (!across) continue;
     const auto b = static_cast<std::size_t>(row.body);
-    double gap = row.gap + row.softness * lambda[i];
+    double gap = row.gap + row.compliance * lambda[i];
     for (const auto& [dof, coefficient] : row.on_body) gap -= coefficient * d[b][dof];
     const double open = std::max(std::abs(gap) - closed_gap(model), 0.0);
     largest[b] = std::max(largest[b], std::abs(lambda[i]));

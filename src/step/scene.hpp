@@ -37,7 +37,7 @@ struct Scene
   insertion::InsertionSettings insertion;
   cavity::Settings cavities;
   law::Settings laws;
-  std::vector<law::Contender> compare;  ///< solvers to be timed beside it
+  std::vector<law::BenchmarkCase> compare;  ///< solvers to be timed beside it
   bool energy = false;                  ///< keep the energy account
   bool stale_error = false;             ///< solve steps with a stale compliance exactly as well
 };

@@ -55,7 +55,7 @@ struct Differenced
 };
 
 /// What BDF2 remembers of the step before.
-struct Before
+struct PreviousStep
 {
   Differenced velocity;
   tissue::TissueState tissue;
@@ -81,7 +81,7 @@ struct State
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
   cavity::State cavities;
-  std::optional<Before> before;  ///< with -time_scheme bdf2 only
+  std::optional<PreviousStep> before;  ///< with -time_scheme bdf2 only
   EnergyAccount energy;          ///< kept with -output_energy only
 
   /// See core/visit.hpp.

@@ -6,7 +6,7 @@ namespace trocar::tissue {
 StressField Tissue::stresses(const OwnedField& u) const
 {
   const auto u_g = space_->with_ghosts(u);
-  Configuration at;
+  LinearisationPoint at;
   configure(u_g, at);
   const StressField mine = elements_->stresses(at, u_g);
   const Eigen::Index tets = mesh_->tet_count();
@@ -32,7 +32,7 @@ Work Tissue::work(const TissueState& old, const TissueState& past, const TissueS
 {
   Kinematics motion{space_->with_ghosts(next.u), {}, {}};
   if (!step.is_static) motion.v = space_->with_ghosts(next.v);
-  Configuration at;
+  LinearisationPoint at;
   configure(motion.u, at);
   const TetWork mine = elements_->work(at, motion);
   Work work;

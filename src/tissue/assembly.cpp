@@ -7,7 +7,7 @@
 namespace trocar::tissue {
 
 template <int N>
-void ElementsOf<N>::assemble(const Configuration& at, const core::Rates& rate,
+void ElementsOf<N>::assemble(const LinearisationPoint& at, const core::Rates& rate,
                              const fem::BlockPattern& pattern, fem::BlockMatrix& values) const
 {
   for (std::size_t e = 0; e < tets(); ++e) {
@@ -37,7 +37,7 @@ void ElementsOf<N>::assemble(const Configuration& at, const core::Rates& rate,
 }
 
 template <int N>
-void ElementsOf<N>::add_patches(const Configuration& at, const core::Rates& rate,
+void ElementsOf<N>::add_patches(const LinearisationPoint& at, const core::Rates& rate,
                                 const fem::BlockPattern& pattern, fem::BlockMatrix& values) const
 {
   const auto share = fem::corner_weights<N>();
@@ -68,9 +68,9 @@ void ElementsOf<N>::add_patches(const Configuration& at, const core::Rates& rate
   }
 }
 
-template void ElementsOf<4>::assemble(const Configuration&, const core::Rates&,
+template void ElementsOf<4>::assemble(const LinearisationPoint&, const core::Rates&,
                                       const fem::BlockPattern&, fem::BlockMatrix&) const;
-template void ElementsOf<10>::assemble(const Configuration&, const core::Rates&,
+template void ElementsOf<10>::assemble(const LinearisationPoint&, const core::Rates&,
                                        const fem::BlockPattern&, fem::BlockMatrix&) const;
 
 }  // namespace trocar::tissue

@@ -81,7 +81,7 @@ void ElementsOf<N>::add_averaged(const core::VecX& theta, core::VecX& p) const
 
 /// ∂θ/∂F : grad d at the points.
 template <int N>
-core::VecX ElementsOf<N>::dilatation_rates(const Configuration& at, const GhostedField& d) const
+core::VecX ElementsOf<N>::dilatation_rates(const LinearisationPoint& at, const GhostedField& d) const
 {
   core::VecX theta(static_cast<Eigen::Index>(shapes_.size()));
   for (std::size_t e = 0; e < tets(); ++e) {
@@ -95,7 +95,7 @@ core::VecX ElementsOf<N>::dilatation_rates(const Configuration& at, const Ghoste
 
 /// θ at the points of a tet, with stiffness damping.
 template <int N>
-void ElementsOf<N>::put_dilatations(std::size_t e, const Configuration& at,
+void ElementsOf<N>::put_dilatations(std::size_t e, const LinearisationPoint& at,
                                     const Kinematics& motion, core::VecX& theta) const
 {
   const double beta = material(e).rayleigh_stiffness;
@@ -114,7 +114,7 @@ void ElementsOf<N>::put_dilatations(std::size_t e, const Configuration& at,
 
 /// λθ at the points, with stiffness damping, averaged as the elements do [Pa].
 template <int N>
-core::VecX ElementsOf<N>::pressures(const Configuration& at, const Kinematics& motion) const
+core::VecX ElementsOf<N>::pressures(const LinearisationPoint& at, const Kinematics& motion) const
 {
   core::VecX theta(static_cast<Eigen::Index>(shapes_.size()));
   for (std::size_t e = 0; e < tets(); ++e) put_dilatations(e, at, motion, theta);
@@ -122,7 +122,7 @@ core::VecX ElementsOf<N>::pressures(const Configuration& at, const Kinematics& m
 }
 
 template <int N>
-core::VecX ElementsOf<N>::led_pressures(const Configuration& last, const GhostedField& d) const
+core::VecX ElementsOf<N>::linearised_pressures(const LinearisationPoint& last, const GhostedField& d) const
 {
   core::VecX theta = dilatation_rates(last, d);
   for (std::size_t point = 0; point < shapes_.size(); ++point)
@@ -132,7 +132,7 @@ core::VecX ElementsOf<N>::led_pressures(const Configuration& last, const Ghosted
 }
 
 template <int N>
-void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
+void ElementsOf<N>::add_tet_forces(std::size_t e, const LinearisationPoint& at, const Kinematics& motion,
                                    const core::VecX& p, ForceSums& sums) const
 {
   const Material& m = material(e);
@@ -168,7 +168,7 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const Configuration& at, const
 }
 
 template <int N>
-void ElementsOf<N>::add_forces(const Configuration& at, const Kinematics& motion,
+void ElementsOf<N>::add_forces(const LinearisationPoint& at, const Kinematics& motion,
                                ForceSums& sums) const
 {
   const core::VecX p = averaged() ? pressures(at, motion) : core::VecX();
@@ -176,7 +176,7 @@ void ElementsOf<N>::add_forces(const Configuration& at, const Kinematics& motion
 }
 
 template <int N>
-void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
+void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const LinearisationPoint& at,
                                   const Kinematics& motion, ForceSums& sums) const
 {
   core::VecX p;
@@ -189,7 +189,7 @@ void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const Co
 }
 
 template <int N>
-OwnedField ElementsOf<N>::operate(const Configuration& at, const core::Rates& rate,
+OwnedField ElementsOf<N>::operate(const LinearisationPoint& at, const core::Rates& rate,
                                   const GhostedField& d) const
 {
   core::VecX p;  // what the averages add to the operator at the points
@@ -214,7 +214,7 @@ OwnedField ElementsOf<N>::operate(const Configuration& at, const core::Rates& ra
 }
 
 template <int N>
-TetWork ElementsOf<N>::work(const Configuration& at, const Kinematics& motion) const
+TetWork ElementsOf<N>::work(const LinearisationPoint& at, const Kinematics& motion) const
 {
   TetWork work;
   const core::VecX p = pressures(at, {motion.u, {}, {}});
@@ -252,7 +252,7 @@ TetWork ElementsOf<N>::work(const Configuration& at, const Kinematics& motion) c
 }
 
 template <int N>
-StressField ElementsOf<N>::stresses(const Configuration& at, const GhostedField& u) const
+StressField ElementsOf<N>::stresses(const LinearisationPoint& at, const GhostedField& u) const
 {
   const auto count = static_cast<Eigen::Index>(tets());
   StressField sums{core::VecX::Zero(6 * count), core::VecX::Zero(N == 4 ? 0 : 24 * count),

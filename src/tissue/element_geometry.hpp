@@ -155,7 +155,7 @@ bool ElementsOf<N>::rotate(const GhostedField& u, const PointOf& point_of, std::
 }
 
 template <int N>
-bool ElementsOf<N>::configure(const GhostedField& u, Configuration& at) const
+bool ElementsOf<N>::configure(const GhostedField& u, LinearisationPoint& at) const
 {
   const std::size_t count = shapes_.size();
   if (settings_.model == Model::linear) {
@@ -194,7 +194,7 @@ std::vector<std::size_t> ElementsOf<N>::with_patches(const std::vector<std::size
 
 template <int N>
 void ElementsOf<N>::configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
-                                  Configuration& at) const
+                                  LinearisationPoint& at) const
 {
   at.R.assign(shapes_.size(), Mat3::Identity());
   if (settings_.model != Model::corotational) return;

@@ -11,7 +11,7 @@ std::unique_ptr<Elements> Elements::make(const mesh::Mesh& mesh, const fem::Spac
   return std::make_unique<ElementsOf<4>>(mesh, space, settings);
 }
 
-bool Configuration::operator==(const Configuration& other) const
+bool LinearisationPoint::operator==(const LinearisationPoint& other) const
 {
   return R == other.R && G == other.G && p == other.p;
 }

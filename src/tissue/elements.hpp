@@ -28,7 +28,7 @@ enum class Dilatation { pointwise, element, nodal };
 inline constexpr double most_at_point = 10.0;
 
 /// Rings of tets that a rank needs around its nodes (see fem::Space).
-inline int rings(Dilatation dilatation)
+inline int overlap_layers(Dilatation dilatation)
 {
   return dilatation == Dilatation::nodal ? 2 : 1;
 }
@@ -51,13 +51,13 @@ struct ElementSettings
 
 /// Where the tissue is linearised: what the operator depends on, by integration point of the local
 /// tets. A value.
-struct Configuration
+struct LinearisationPoint
 {
   std::vector<Mat3> R;  ///< rotations; identities for linear tissue
   std::vector<Mat3> G;  ///< displacement gradients and
   core::VecX p;         ///< pressures λθ [Pa], where the tangent depends on them
 
-  bool operator==(const Configuration& other) const;
+  bool operator==(const LinearisationPoint& other) const;
 };
 
 /// Displacement with velocity and what else inertia acts on, w = a + α v.
@@ -110,37 +110,37 @@ class Elements
   /// The first tet that is turned inside out at u, in file numbering; -1: none.
   virtual int folded(const GhostedField& u) const = 0;
   /// Rotations, and for exact tangents the rest, at u. False when a tet is turned inside out.
-  virtual bool configure(const GhostedField& u, Configuration& at) const = 0;
+  virtual bool configure(const GhostedField& u, LinearisationPoint& at) const = 0;
   /// Pressures [Pa] to which the linearisation `last` leads with the further displacement d: what
   /// Newton's method has for them when they are unknowns of their own. In the tangent they serve
   /// better than λθ, which after a finite step is λ times the square of the strain off.
-  virtual core::VecX led_pressures(const Configuration& last, const GhostedField& d) const = 0;
+  virtual core::VecX linearised_pressures(const LinearisationPoint& last, const GhostedField& d) const = 0;
   /// As far as the forces of some tets need it.
   virtual void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
-                             Configuration& at) const = 0;
+                             LinearisationPoint& at) const = 0;
 
   /// Adds K + β r_v K_v + (r_a + α) r_v M [N/m] with the rates r_v, r_a of velocity and
   /// acceleration; K_v is that of the viscous stress, K itself where K is R K₀ Rᵀ.
-  virtual void assemble(const Configuration& at, const core::Rates& rate,
+  virtual void assemble(const LinearisationPoint& at, const core::Rates& rate,
                         const fem::BlockPattern& pattern, fem::BlockMatrix& values) const = 0;
   /// The same operator times d [N], without its matrix and its supports.
-  virtual OwnedField operate(const Configuration& at, const core::Rates& rate,
+  virtual OwnedField operate(const LinearisationPoint& at, const core::Rates& rate,
                              const GhostedField& d) const = 0;
 
   /// Adds the forces of stress, stiffness damping, and inertia with mass damping.
-  virtual void add_forces(const Configuration& at, const Kinematics& motion,
+  virtual void add_forces(const LinearisationPoint& at, const Kinematics& motion,
                           ForceSums& sums) const = 0;
   /// The same into the nodes of some tets only.
-  virtual void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
+  virtual void add_forces_of(const std::vector<std::size_t>& tets, const LinearisationPoint& at,
                              const Kinematics& motion, ForceSums& sums) const = 0;
   /// Adds the forces of inertia with mass damping alone [N].
   virtual void add_inertia(const Kinematics& motion, OwnedField& inertia) const = 0;
   /// Takes the exact tangent, or that with the rotations held, from the next `configure` on.
   virtual void take(Tangent tangent) = 0;
 
-  virtual TetWork work(const Configuration& at, const Kinematics& motion) const = 0;
+  virtual TetWork work(const LinearisationPoint& at, const Kinematics& motion) const = 0;
   /// By local tet.
-  virtual StressField stresses(const Configuration& at, const GhostedField& u) const = 0;
+  virtual StressField stresses(const LinearisationPoint& at, const GhostedField& u) const = 0;
 
   /// Adds ρ V N_a g to the nodes [N].
   virtual void add_weight(const core::Vec3& gravity, OwnedField& force) const = 0;

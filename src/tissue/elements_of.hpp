@@ -22,22 +22,22 @@ class ElementsOf final : public Elements
 
   const fem::Cliques& cliques() const override { return cliques_; }
   int folded(const GhostedField& u) const override;
-  bool configure(const GhostedField& u, Configuration& at) const override;
-  core::VecX led_pressures(const Configuration& last, const GhostedField& d) const override;
+  bool configure(const GhostedField& u, LinearisationPoint& at) const override;
+  core::VecX linearised_pressures(const LinearisationPoint& last, const GhostedField& d) const override;
   void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
-                     Configuration& at) const override;
-  void assemble(const Configuration& at, const core::Rates& rate, const fem::BlockPattern& pattern,
+                     LinearisationPoint& at) const override;
+  void assemble(const LinearisationPoint& at, const core::Rates& rate, const fem::BlockPattern& pattern,
                 fem::BlockMatrix& values) const override;
-  OwnedField operate(const Configuration& at, const core::Rates& rate,
+  OwnedField operate(const LinearisationPoint& at, const core::Rates& rate,
                      const GhostedField& d) const override;
-  void add_forces(const Configuration& at, const Kinematics& motion,
+  void add_forces(const LinearisationPoint& at, const Kinematics& motion,
                   ForceSums& sums) const override;
-  void add_forces_of(const std::vector<std::size_t>& tets, const Configuration& at,
+  void add_forces_of(const std::vector<std::size_t>& tets, const LinearisationPoint& at,
                      const Kinematics& motion, ForceSums& sums) const override;
   void add_inertia(const Kinematics& motion, OwnedField& inertia) const override;
   void take(Tangent tangent) override { settings_.tangent = tangent; }
-  TetWork work(const Configuration& at, const Kinematics& motion) const override;
-  StressField stresses(const Configuration& at, const GhostedField& u) const override;
+  TetWork work(const LinearisationPoint& at, const Kinematics& motion) const override;
+  StressField stresses(const LinearisationPoint& at, const GhostedField& u) const override;
   void add_weight(const core::Vec3& gravity, OwnedField& force) const override;
   std::vector<Mat3> turns(const std::vector<Mat3>& R,
                           const std::vector<Mat3>& R_old) const override;
@@ -70,7 +70,7 @@ class ElementsOf final : public Elements
     return values * shapes_[point].gradient.transpose();
   }
   /// ∂θ/∂F in the configuration `at`.
-  Mat3 dilatation_gradient(const Configuration& at, std::size_t point) const
+  Mat3 dilatation_gradient(const LinearisationPoint& at, std::size_t point) const
   {
     return exact() ? energy::dilatation_gradient(settings_.model, at.R[point], at.G[point])
                    : at.R[point];
@@ -97,19 +97,19 @@ class ElementsOf final : public Elements
   /// λθ at the points, of point values of θ averaged as the elements do [Pa].
   core::VecX pressure_of(const core::VecX& theta) const;
   void add_averaged(const core::VecX& theta, core::VecX& p) const;
-  core::VecX dilatation_rates(const Configuration& at, const GhostedField& d) const;
-  void put_dilatations(std::size_t e, const Configuration& at, const Kinematics& motion,
+  core::VecX dilatation_rates(const LinearisationPoint& at, const GhostedField& d) const;
+  void put_dilatations(std::size_t e, const LinearisationPoint& at, const Kinematics& motion,
                        core::VecX& theta) const;
-  core::VecX pressures(const Configuration& at, const Kinematics& motion) const;
+  core::VecX pressures(const LinearisationPoint& at, const Kinematics& motion) const;
   /// These tets and those that share a dilatation with them.
   std::vector<std::size_t> with_patches(const std::vector<std::size_t>& tets) const;
-  void add_tet_forces(std::size_t e, const Configuration& at, const Kinematics& motion,
+  void add_tet_forces(std::size_t e, const LinearisationPoint& at, const Kinematics& motion,
                       const core::VecX& p, ForceSums& sums) const;
   void add_sizes(std::size_t e, const Kinematics& motion, const Nodal& force, const Nodal& inertia,
                  ForceSums& sums) const;
-  void add_patches(const Configuration& at, const core::Rates& rate,
+  void add_patches(const LinearisationPoint& at, const core::Rates& rate,
                    const fem::BlockPattern& pattern, fem::BlockMatrix& values) const;
-  Mat3 increment(const Configuration& at, const core::Rates& rate, std::size_t point,
+  Mat3 increment(const LinearisationPoint& at, const core::Rates& rate, std::size_t point,
                  const Mat3& D) const;
 
   const fem::Space* space_;
@@ -126,7 +126,7 @@ class ElementsOf final : public Elements
 /// (∂P/∂F + r_v ∂P/∂Ḟ) : D at a point, stress and viscous stress, without what a shared dilatation
 /// adds [Pa].
 template <int N>
-Mat3 ElementsOf<N>::increment(const Configuration& at, const core::Rates& rate, std::size_t point,
+Mat3 ElementsOf<N>::increment(const LinearisationPoint& at, const core::Rates& rate, std::size_t point,
                               const Mat3& D) const
 {
   const Material& m = material(point / points);

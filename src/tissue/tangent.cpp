@@ -8,19 +8,19 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 {
   const bool led = goes_on && exact_at_ && tangent_.exact();
   core::VecX p;
-  if (led) p = elements_->led_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
+  if (led) p = elements_->linearised_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
   const bool known = configured_.u && configured_.exact == tangent_.exact() &&
                      !tangent_.exact() && configured_.u->value == iterate.value;
-  bool upright = true;  // else the balance would have been found where an element is folded
+  bool admissible = true;  // else the balance would have been found where an element is folded
   known_ = space_->comm().all(known);
   if (known_)
     at_ = configured_.at;
   else
-    upright = configure(space_->with_ghosts(iterate), at_);
-  exact_at_ = upright && tangent_.exact();
+    admissible = configure(space_->with_ghosts(iterate), at_);
+  exact_at_ = admissible && tangent_.exact();
   if (exact_at_) u_at_ = iterate;
-  if (led && upright) at_.p = std::move(p);
-  return upright;
+  if (led && admissible) at_.p = std::move(p);
+  return admissible;
 }
 
 /// The factor of an operator may serve later ones.
@@ -30,7 +30,7 @@ bool Tissue::may_lag() const
          current_->factor.solver().can_turn();
 }
 
-core::Outcome<core::Done> Tissue::make_factor(const Configuration& at)
+core::Outcome<core::Done> Tissue::make_factor(const LinearisationPoint& at)
 {
   const auto made = current_->factor.make(values_);
   current_->made.reset();

@@ -27,7 +27,7 @@ Tissue::Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings s
   find_holders();
 }
 
-void Tissue::assemble(const Configuration& at, const core::Rates& rate)
+void Tissue::assemble(const LinearisationPoint& at, const core::Rates& rate)
 {
   values_.set_zero();
   elements_->assemble(at, rate, pattern_, values_);
@@ -35,7 +35,7 @@ void Tissue::assemble(const Configuration& at, const core::Rates& rate)
   ++ledger_->assemblies;
 }
 
-bool Tissue::configure(const fem::GhostedField& u, Configuration& at) const
+bool Tissue::configure(const fem::GhostedField& u, LinearisationPoint& at) const
 {
   return space_->comm().all(elements_->configure(u, at));
 }
@@ -45,7 +45,7 @@ void Tissue::analyse()
   const bool turns = settings_.model != Model::linear && settings_.lag_tolerance > 0.0;
   std::unique_ptr<solve::StepSolver> solver = solve::make_step_solver(
       settings_.provider,
-      {*space_, pattern_, fixed_, mesh_->x, settings_.pinned, settings_.reuse != solve::Reuse::none,
+      {*space_, pattern_, fixed_, mesh_->x, settings_.ordered_last, settings_.reuse != solve::Reuse::none,
        settings_.most_memory, turns, settings_.linear, *ledger_});
   if (settings_.reuse == solve::Reuse::stale && !solver->can_turn())
     throw core::solver_error("stale reuse keeps a factor, but the tissue solver is " +
@@ -70,7 +70,7 @@ Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
   return operators_.back();
 }
 
-core::Outcome<core::Done> Tissue::use_operator(const Configuration& at, const TimeStep& step)
+core::Outcome<core::Done> Tissue::use_operator(const LinearisationPoint& at, const TimeStep& step)
 {
   const core::Rates rate = step.rates();
   const bool linear = settings_.model == Model::linear;
@@ -86,7 +86,7 @@ core::Outcome<core::Done> Tissue::use_operator(const Configuration& at, const Ti
   assemble(at, rate);
   const bool serves = may_lag() && factor.age().uses > 0;
   if (!serves || !space_->comm().all(same_rates) || factor_worn()) return make_factor(at);
-  factor.keep(turned_nodes(at.R, current_->made->at.R));
+  factor.keep(node_rotations(at.R, current_->made->at.R));
   return core::Done{};
 }
 
@@ -99,7 +99,7 @@ OwnedField Tissue::external(const TimeStep& step) const
   return f;
 }
 
-OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Configuration& at,
+OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const LinearisationPoint& at,
                           const TimeStep& step, Sizes* sizes) const
 {
   ForceSums sums{space_->zero(), space_->zero()};
@@ -145,7 +145,7 @@ OwnedField Tissue::forces_from_balance(const TissueState& old, const OwnedField&
 
 /// The same of some elements alone, and all loads.
 OwnedField Tissue::forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
-                             const OwnedField& u, const Configuration& at,
+                             const OwnedField& u, const LinearisationPoint& at,
                              const TimeStep& step) const
 {
   ForceSums sums{space_->zero(), space_->zero()};
@@ -239,7 +239,7 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
 
 OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const TimeStep& step) const
 {
-  Configuration at;
+  LinearisationPoint at;
   configure(space_->with_ghosts(u), at);
   OwnedField r = forces(old, u, at, step);
   fixed_.clear(r);
@@ -248,7 +248,7 @@ OwnedField Tissue::residual(const TissueState& old, const OwnedField& u, const T
 
 void Tissue::prepare(const TimeStep& step)
 {
-  Configuration at;
+  LinearisationPoint at;
   configure(space_->with_ghosts(space_->zero()), at);
   if (const auto made = use_operator(at, step); !made) throw core::solver_error(made.why());
 }

@@ -27,7 +27,7 @@ struct TissueSettings : ElementSettings
   solve::Reuse reuse = solve::Reuse::exact;
   int stale_steps = 10;      ///< that share a factor with Reuse::stale
   double most_memory = 0.0;  ///< that a factor of our own may take [B], 0: a part of what is free
-  std::vector<int> pinned;   ///< file nodes that needles are planned to reach
+  std::vector<int> ordered_last;   ///< file nodes that needles are planned to reach
   /// Equilibrium that a step with an older factor must reach, of its load; 0: always factor anew.
   double lag_tolerance = 0.0;
   bool allow_inversion = false;  ///< of linear tissue, which feels nothing of it
@@ -39,7 +39,7 @@ struct TissueSettings : ElementSettings
 struct FactorOrigin
 {
   core::Rates rates;
-  Configuration at;    ///< where
+  LinearisationPoint at;    ///< where
   bool exact = false;  ///< with the exact tangent
 
   /// See core/visit.hpp.
@@ -93,7 +93,7 @@ struct Work
 
 /// Forces on the tissue [N], equal on every rank, by what holds it: prescribed displacements and
 /// supports, as the boundary conditions list them.
-struct HolderForces
+struct Reactions
 {
   std::vector<Vec3> tools, supports;
 };
@@ -137,7 +137,7 @@ class Tissue
 
   /// Forces by which prescribed displacements and supports hold the tissue, `more` [N] being those
   /// of rows and cavities. Costs the elements there. Collective.
-  HolderForces holder_forces(const TissueState& old, const OwnedField& u, const TimeStep& step,
+  Reactions reactions(const TissueState& old, const OwnedField& u, const TimeStep& step,
                              const OwnedField& more) const;
 
   /// In file order, equal on every rank. Only on request: an element loop, and all tets on every
@@ -151,14 +151,14 @@ class Tissue
 
   /// Where the operator is linearised at u. False when an element is turned inside out, on every
   /// rank. Collective.
-  bool configure(const fem::GhostedField& u, Configuration& at) const;
+  bool configure(const fem::GhostedField& u, LinearisationPoint& at) const;
   /// Fills the values of the operator. Not collective.
-  void assemble(const Configuration& at, const core::Rates& rate);
+  void assemble(const LinearisationPoint& at, const core::Rates& rate);
 
   /// A d with the matrix assembled last [N]. Collective.
   OwnedField times(const OwnedField& d) const { return values_.times(*space_, d); }
   /// The same element by element, supports left out. Collective.
-  OwnedField operate_by_elements(const Configuration& at, const core::Rates& rate,
+  OwnedField operate_by_elements(const LinearisationPoint& at, const core::Rates& rate,
                                  const OwnedField& d) const
   {
     return elements_->operate(at, rate, space_->with_ghosts(d));
@@ -176,29 +176,29 @@ class Tissue
   {
     solve::LaggedFactor factor;
     std::optional<core::Rates> rate{};           ///< none: not assembled yet, or to be again
-    Configuration at{};                          ///< it was assembled with; empty for linear tissue
+    LinearisationPoint at{};                          ///< it was assembled with; empty for linear tissue
     std::shared_ptr<const FactorOrigin> made{};  ///< from what its factor was; linear tissue: none
   };
 
   bool linearise_at(const OwnedField& iterate, bool goes_on);
-  core::Outcome<core::Done> use_operator(const Configuration& at, const TimeStep& step);
-  core::Outcome<core::Done> make_factor(const Configuration& at);
+  core::Outcome<core::Done> use_operator(const LinearisationPoint& at, const TimeStep& step);
+  core::Outcome<core::Done> make_factor(const LinearisationPoint& at);
   core::Outcome<core::Done> go_on_with_factor(const TissueState& old, const TimeStep& step);
   core::Refusal without_factor(const core::Refusal& refusal) const;
   solve::Linearisation with_operator(const fem::Load& more);
   bool may_lag() const;
   Operator& operator_for(const core::Rates& rate);
   bool factor_worn() const;
-  std::vector<Mat3> turned_nodes(const std::vector<Mat3>& R,
+  std::vector<Mat3> node_rotations(const std::vector<Mat3>& R,
                                  const std::vector<Mat3>& R_factor) const;
   OwnedField prescribed_increment(const OwnedField& iterate, const TimeStep& step) const;
-  OwnedField forces(const TissueState& old, const OwnedField& u, const Configuration& at,
+  OwnedField forces(const TissueState& old, const OwnedField& u, const LinearisationPoint& at,
                     const TimeStep& step, Sizes* sizes = nullptr) const;
   bool forces_known(const TissueState& old, const OwnedField& u, bool goes_on) const;
   OwnedField forces_from_balance(const TissueState& old, const OwnedField& u, const TimeStep& step,
                                  bool goes_on) const;
   OwnedField forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
-                       const OwnedField& u, const Configuration& at, const TimeStep& step) const;
+                       const OwnedField& u, const LinearisationPoint& at, const TimeStep& step) const;
   Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
   Sizes no_sizes() const;
   /// Norm of what need not be balanced: a part of the sizes, and what rounding leaves [N].
@@ -216,14 +216,14 @@ class Tissue
   TangentChoice tangent_;
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
-  Configuration at_;       ///< of the present linearisation
+  LinearisationPoint at_;       ///< of the present linearisation
   OwnedField u_at_;        ///< where that is, with an exact tangent [m]
   bool exact_at_ = false;  ///< it is that of an exact tangent; equal on all ranks
   struct
   {
     std::optional<OwnedField> u;
     bool exact = false;  ///< what an exact tangent needs is there
-    Configuration at;
+    LinearisationPoint at;
     Sizes sizes;
   } configured_;        ///< where the balance was looked at last: often the next step begins there
   bool known_ = false;  ///< the present linearisation is there

@@ -44,11 +44,11 @@ void Tissue::find_holders()
       }
 }
 
-HolderForces Tissue::holder_forces(const TissueState& old, const OwnedField& u,
+Reactions Tissue::reactions(const TissueState& old, const OwnedField& u,
                                    const TimeStep& step, const OwnedField& more) const
 {
   // Linear tissue is configured the same everywhere.
-  Configuration here;
+  LinearisationPoint here;
   const bool linear = settings_.model == Model::linear;
   if (!linear) elements_->configure_for(held_elements_, space_->with_ghosts(u), here);
   const OwnedField held = forces_of(held_elements_, old, u, linear ? at_ : here, step);
@@ -58,7 +58,7 @@ HolderForces Tissue::holder_forces(const TissueState& old, const OwnedField& u,
   for (const auto& [dof, holder] : held_dofs_)
     sums[3 * static_cast<Eigen::Index>(holder) + dof % 3] -= held.value[dof] + more.value[dof];
   space_->comm().sum(sums);
-  HolderForces found;
+  Reactions found;
   for (std::size_t k = 0; k < count; ++k)
     (k < tools ? found.tools : found.supports)
         .emplace_back(sums.segment<3>(3 * static_cast<Eigen::Index>(k)));

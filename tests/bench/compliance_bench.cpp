@@ -87,14 +87,14 @@ std::vector<int> axis_nodes(const mesh::Mesh& mesh, const Vec3& size)
   return nodes;
 }
 
-tissue::TissueSettings gel(solve::Provider provider, const std::vector<int>& pinned = {})
+tissue::TissueSettings gel(solve::Provider provider, const std::vector<int>& ordered_last = {})
 {
   tissue::TissueSettings settings;
   settings.model = tissue::Model::linear;
   settings.materials = {{5000.0, 0.45, 1000.0, 0.1, 0.001}};
   settings.boundary.fixed = {{"z0", 7}};
   settings.provider = provider;
-  settings.pinned = pinned;
+  settings.ordered_last = ordered_last;
   return settings;
 }
 
@@ -180,7 +180,7 @@ void time_assembly(const Bench& bench, const test::BlockShape& shape, const std:
       u.node(k) = 0.2 * Vec3(x.z(), 0, -x.x() * x.z() / 0.04);
     }
     const fem::GhostedField u_g = body.space.with_ghosts(u);
-    tissue::Configuration at;
+    tissue::LinearisationPoint at;
     const double seconds = bench.median([&] {
       if (turns || at.R.empty()) body.tissue.configure(u_g, at);
       body.tissue.assemble(at, {100.0, 100.0});

@@ -170,7 +170,7 @@ void run(Bench bench, double friction, bool with_columns)
   bench.figure("rows", course.rows, "1");
   bench.figure("refactor_step", median(again(scenario, course, 3, comm).seconds), "s");
   const mesh::Locator locator(scenario.mesh);
-  scenario.tissue.pinned = driver::planned_nodes(scenario.needles, scenario.mesh, locator, 1);
+  scenario.tissue.ordered_last = driver::planned_nodes(scenario.needles, scenario.mesh, locator, 1);
   bench.figure("refactor_pinned_step", median(again(scenario, course, 3, comm).seconds), "s");
   if (!with_columns) return;
   scenario.tissue.provider = solve::Provider::ksp;

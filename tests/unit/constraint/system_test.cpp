@@ -47,13 +47,13 @@ Set hand_made()
   Row b = tissue_row({4, 30}, Eigen::Vector2d(0.4, 0.6), Vec3(0, 1, 3), -2e-3);
   b.body = 1;
   b.on_body = {{0, 2.0}, {2, -1.0}};
-  b.softness = 0.3;
+  b.compliance = 0.3;
   Row c;
   c.body = 0;
   c.on_body = {{2, 1.0}, {0, 4.0}};  // dofs 0 and 1 are held
   c.gap = 5e-4;
   Row d;
-  d.distributed = {{set.add_wide(std::make_shared<solve::WideProbe>())}};
+  d.distributed = {{set.add_functional(std::make_shared<solve::DistributedFunctional>())}};
   d.gap = -1e-4;
   for (const Row& row : {a, b, c, d}) set.add(row);
   set.couplings() = {{0, 2, 0.05}, {3, 3, 0.7}};
@@ -160,8 +160,8 @@ TEST(System, GivesEveryRowItsOwnLaw)
     return one;
   };
   Row first = row(0);
-  first.softness = 1e-3;
-  first.relative_softness = 0.5;
+  first.compliance = 1e-3;
+  first.relative_compliance = 0.5;
   EXPECT_EQ(set.add(first), 0);
   EXPECT_EQ(set.add({row(1), row(2), row(3)}, law::Law::cone(0.3, 2.0), 10), 1);
   EXPECT_EQ(set.add(row(4), law::Law::follower(0, 0.7), set.next_point()), 4);
@@ -177,8 +177,8 @@ TEST(System, GivesEveryRowItsOwnLaw)
   EXPECT_EQ(problem.blocks[2].point, 11);
   EXPECT_LT((problem.start - 0.1 * VecX::LinSpaced(5, 0.0, 4.0)).norm(), 1e-15);
   EXPECT_EQ(problem.start, set.starts());
-  EXPECT_NEAR(problem.softness[0], 1e-3 + 0.5 * C(0, 0), 1e-15);
-  EXPECT_EQ(problem.softness[1], 0.0);
+  EXPECT_NEAR(problem.compliance[0], 1e-3 + 0.5 * C(0, 0), 1e-15);
+  EXPECT_EQ(problem.compliance[1], 0.0);
 }
 
 // What a row reads, it pushes with: work counted at the rows is that at the nodes.

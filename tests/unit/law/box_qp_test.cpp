@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "law/box_qp.hpp"
-#include "law/condensed.hpp"
+#include "law/schur_complement.hpp"
 #include "support/problem.hpp"
 
 namespace trocar::law {
@@ -12,7 +12,7 @@ using test::random_problem;
 TEST(BoxQp, WarmStartedActiveSetNeedsFewFactorisations)
 {
   const Problem problem = random_problem(30, 120, 11);
-  Condensed condensed(problem);
+  SchurComplement condensed(problem);
   const BoxSolution cold =
       active_set(condensed.S(), condensed.s(), condensed.bounds().F, condensed.start(), 1000);
   const BoxSolution warm =
@@ -27,14 +27,14 @@ TEST(BoxQp, SetNewtonNeedsHardlyMoreThanOneFactorisationFromGoodSets)
 {
   for (int rank : {120, 40}) {  // regular, and S singular
     const Problem problem = random_problem(30, rank, 11);
-    Condensed condensed(problem);
+    SchurComplement condensed(problem);
     const MatX& S = condensed.S();
     const VecX& s = condensed.s();
     const Bounds& bounds = condensed.bounds();
     const BoxSolution cold = interior_point(S, s, bounds, condensed.start(), 1e-13, 100);
     ASSERT_TRUE(cold.finished);
     EXPECT_LE(cold.factorisations, 20);
-    const BoxSolution warm = set_newton(S, s, bounds.F, cold.x, 1e-9, 6);
+    const BoxSolution warm = primal_dual_active_set(S, s, bounds.F, cold.x, 1e-9, 6);
     EXPECT_TRUE(warm.finished);
     EXPECT_LE(warm.factorisations, rank == 120 ? 1 : 2);
     EXPECT_LT(box_residual(S, s, bounds, warm.x), 1e-12);
@@ -46,10 +46,10 @@ TEST(BoxQp, SetNewtonGivesUpInsteadOfCycling)
   // From the wrong bounds everywhere; whatever it does, few factorisations and no false success.
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Problem problem = random_problem(30, 40, seed);
-    Condensed condensed(problem);
+    SchurComplement condensed(problem);
     const VecX& F = condensed.bounds().F;
     const VecX wrong = condensed.s().cwiseSign().cwiseProduct(F);
-    const BoxSolution answer = set_newton(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
+    const BoxSolution answer = primal_dual_active_set(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
     EXPECT_LE(answer.factorisations, 6);
     if (answer.finished)
       EXPECT_LT(box_residual(condensed.S(), condensed.s(), condensed.bounds(), answer.x), 1e-9);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "law/box_qp.hpp"
-#include "law/condensed.hpp"
+#include "law/schur_complement.hpp"
 #include "law/solve.hpp"
 #include "support/problem.hpp"
 
@@ -80,7 +80,7 @@ TEST(Discs, InteriorPointsNeedNoRegularityNorOneSizeOfDiscs)
 {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Problem problem = with_discs(8, seed % 2 == 0 ? 60 : 16, seed);
-    Condensed condensed(problem);
+    SchurComplement condensed(problem);
     const BoxSolution answer = interior_point(condensed.S(), condensed.s(), condensed.bounds(),
                                               condensed.start(), 1e-9, 100);
     EXPECT_TRUE(answer.finished) << seed;
@@ -91,7 +91,7 @@ TEST(Discs, InteriorPointsNeedNoRegularityNorOneSizeOfDiscs)
 TEST(Discs, OfALastStepNeedFewFactorisations)
 {
   const Problem problem = with_discs(30, 120, 11);
-  Condensed condensed(problem);
+  SchurComplement condensed(problem);
   const BoxSolution cold = interior_point(condensed.S(), condensed.s(), condensed.bounds(),
                                           condensed.start(), 1e-9, 100);
   ASSERT_TRUE(cold.finished);

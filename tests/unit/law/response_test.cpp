@@ -13,7 +13,7 @@ TEST(Response, IsTheChangeOfTheMultipliers)
   int slipping = 0;
   for (unsigned seed = 0; seed < 10; ++seed) {
     Problem problem = test::random_problem(6, 40, seed);
-    if (seed % 2 == 1) problem.softness = VecX::Constant(problem.rows(), 1e-4);
+    if (seed % 2 == 1) problem.compliance = VecX::Constant(problem.rows(), 1e-4);
     const Settings exact{.method = Method::automatic, .tolerance = 1e-13};
     const Multipliers before = solve(problem, exact);
     const VecX dg = 1e-6 * VecX::LinSpaced(problem.rows(), -1.0, 2.0);

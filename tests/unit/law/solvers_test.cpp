@@ -72,8 +72,8 @@ TEST(Solvers, StickInsideTheBoxAndSlipOnIt)
 TEST(Solvers, SoftRowsYieldInProportionToTheirForce)
 {
   Problem problem = random_problem(6, 40, 5);
-  problem.softness = VecX::Zero(problem.rows());
-  for (Eigen::Index i = 0; i < problem.rows(); i += 3) problem.softness[i] = 2e-4;
+  problem.compliance = VecX::Zero(problem.rows());
+  for (Eigen::Index i = 0; i < problem.rows(); i += 3) problem.compliance[i] = 2e-4;
   for (Method method : {Method::automatic, Method::hybrid, Method::pgs}) {
     const Multipliers answer =
         solve(problem, {.method = method, .tolerance = 1e-11, .max_iterations = 100000});

@@ -180,7 +180,7 @@ TEST(Shaft, LeverIsTheDerivativeOfThePosition)
   const Vec3 d = Vec3(0.2, -0.5, 0.9).normalized();
   for (double s : {0.004, 0.05, 0.12, 0.127}) {
     VecX row = VecX::Zero(6 * 7);
-    for (const auto& [dof, value] : lever(shaft, s, d)) row[dof] += value;
+    for (const auto& [dof, value] : jacobian(shaft, s, d)) row[dof] += value;
     for (int node = 0; node < 7; ++node)
       for (int k = 0; k < 6; ++k) {
         const auto moved = [&](double by) {

@@ -46,7 +46,7 @@ core::MatX selection(const test::Body& body, const solve::Probes& probes)
   return S;
 }
 
-solve::WideProbe wide_probe(const test::Body& body, long long id)
+solve::DistributedFunctional wide_probe(const test::Body& body, long long id)
 {
   fem::GlobalField field{core::VecX(3 * body.mesh.node_count())};
   for (Eigen::Index i = 0; i < field.value.size(); ++i)
@@ -64,7 +64,7 @@ TEST_P(Compliance, EqualsTheDenseInverseWhateverWasAskedBefore)
   const double h = 0.01;
   body.tissue.prepare({0.0, h, false});
   const core::MatX inverse = dense_inverse(body, h);
-  const solve::WideProbe one = wide_probe(body, 1), two = wide_probe(body, 2);
+  const solve::DistributedFunctional one = wide_probe(body, 1), two = wide_probe(body, 2);
   const auto& tet = body.mesh.tets[20];
   std::vector<int> whole_tet(tet.begin(), tet.end());
   std::sort(whole_tet.begin(), whole_tet.end());
@@ -129,7 +129,7 @@ TEST_P(Compliance, FinishesAHalfSolutionWithForcesOnItsProbes)
   body.tissue.prepare({0.0, 0.01, false});
   const tissue::TissueState rest = tissue::at_rest(body.space);
   const core::MatX inverse = dense_inverse(body, 0.01);
-  const solve::WideProbe wide = wide_probe(body, 3);
+  const solve::DistributedFunctional wide = wide_probe(body, 3);
   const fem::GlobalField load{core::VecX::NullaryExpr(
       3 * body.mesh.node_count(), [](Eigen::Index i) { return std::cos(static_cast<double>(i)); })};
   fem::OwnedField b = body.space.restrict_to_owned(load);
@@ -163,14 +163,14 @@ TEST(Supernodal, PinnedNodesHaveTheSameColumns)
   const test::BlockShape shape{4, 3, 3, core::Vec3(0.1, 0.08, 0.08), 0.2};
   tissue::TissueSettings settings = held(solve::Provider::supernodal);
   test::Body plain(shape, settings);
-  settings.pinned = {26, 27, 31, 32, 33, 37, 52, 53};
-  test::Body pinned(shape, settings);
-  for (test::Body* body : {&plain, &pinned}) body->tissue.prepare({0.0, 0.01, false});
+  settings.ordered_last = {26, 27, 31, 32, 33, 37, 52, 53};
+  test::Body ordered_last(shape, settings);
+  for (test::Body* body : {&plain, &ordered_last}) body->tissue.prepare({0.0, 0.01, false});
   for (const std::vector<int>& nodes :
        {std::vector<int>{27, 31, 52}, {5, 31, 60}, {5, 17, 26, 27, 31, 60}}) {
     solve::ComplianceReport report;
     const core::MatX a = plain.tissue.factor().compliance().block({nodes, {}}, report);
-    const core::MatX b = pinned.tissue.factor().compliance().block({nodes, {}}, report);
+    const core::MatX b = ordered_last.tissue.factor().compliance().block({nodes, {}}, report);
     EXPECT_LT((a - b).norm(), 1e-11 * a.norm());
   }
 }

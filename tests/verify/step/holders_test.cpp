@@ -30,7 +30,7 @@ Vec3 loads(const step::Scene& scenario)
   return scenario.tissue.materials[0].density * size.prod() * gravity + size.y() * size.z() * pull;
 }
 
-Vec3 sum(const tissue::HolderForces& holders)
+Vec3 sum(const tissue::Reactions& holders)
 {
   Vec3 total = Vec3::Zero();
   for (const auto* forces : {&holders.tools, &holders.supports})
@@ -38,7 +38,7 @@ Vec3 sum(const tissue::HolderForces& holders)
   return total;
 }
 
-tissue::HolderForces at_rest(const step::Scene& scenario, MPI_Comm comm = MPI_COMM_WORLD)
+tissue::Reactions at_rest(const step::Scene& scenario, MPI_Comm comm = MPI_COMM_WORLD)
 {
   step::Model simulation(scenario, base::Comm(comm));
   const step::Outcome<step::Accepted> result = step::initial_state(simulation);
@@ -54,7 +54,7 @@ TEST(Supports, CarryTheLoads)
     for (const auto dilatation : {tissue::Dilatation::pointwise, tissue::Dilatation::nodal}) {
       scenario.tissue.model = model;
       scenario.tissue.dilatation = dilatation;
-      const tissue::HolderForces holders = at_rest(scenario);
+      const tissue::Reactions holders = at_rest(scenario);
       ASSERT_EQ(holders.supports.size(), 2U);
       const double tolerance = model == Model::linear ? 1e-10 : 1e-7;  // iterated to 1e-8
       EXPECT_LT((sum(holders) + loads(scenario)).norm(), tolerance * loads(scenario).norm());
@@ -67,15 +67,15 @@ TEST(Supports, CarryTheLoads)
 TEST(Supports, CountEveryDofOnce)
 {
   step::Scene scenario = loaded(true);
-  const tissue::HolderForces first = at_rest(scenario);
+  const tissue::Reactions first = at_rest(scenario);
   scenario.tissue.boundary.fixed = {{"x0", 1}, {"z0", 7}, {"z0", 4}};
-  const tissue::HolderForces second = at_rest(scenario);
+  const tissue::Reactions second = at_rest(scenario);
   EXPECT_GT((first.supports[1] - second.supports[0]).norm(), 1e-3 * loads(scenario).norm());
   EXPECT_LT((sum(first) - sum(second)).norm(), 1e-10 * loads(scenario).norm());
   EXPECT_EQ(second.supports[2], Vec3(Vec3::Zero()));
   const double free = std::numeric_limits<double>::quiet_NaN();
   scenario.tissue.boundary.displacements = {{"z0", Vec3(free, free, 0.0), std::nullopt, {}}};
-  const tissue::HolderForces held = at_rest(scenario);
+  const tissue::Reactions held = at_rest(scenario);
   EXPECT_NEAR(held.tools[0].z(), second.supports[1].z(), 1e-10 * loads(scenario).norm());
   EXPECT_EQ(held.supports[1].z(), 0.0);
   EXPECT_LT((sum(held) + loads(scenario)).norm(), 1e-10 * loads(scenario).norm());
@@ -85,7 +85,7 @@ TEST(Supports, CarryTheSameOnAnyNumberOfRanks)
 {
   step::Scene scenario = loaded(true);
   scenario.tissue.dilatation = tissue::Dilatation::nodal;
-  const tissue::HolderForces ours = at_rest(scenario), alone = at_rest(scenario, MPI_COMM_SELF);
+  const tissue::Reactions ours = at_rest(scenario), alone = at_rest(scenario, MPI_COMM_SELF);
   for (std::size_t k : {0, 1})
     EXPECT_LT((ours.supports[k] - alone.supports[k]).norm(), 1e-10 * loads(scenario).norm());
 }

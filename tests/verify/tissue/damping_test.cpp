@@ -90,7 +90,7 @@ TEST(Damping, OperatorHoldsTheSameForces)
     const fem::OwnedField u = test::nodal(pair.with, test::deformed);
     const fem::OwnedField d = test::nodal(pair.with, test::direction);
     const auto times = [&](test::Body& body) {
-      tissue::Configuration at;
+      tissue::LinearisationPoint at;
       EXPECT_TRUE(body.tissue.configure(body.space.with_ghosts(u), at));
       body.tissue.assemble(at, rate);
       return body.tissue.times(d).value;
@@ -108,7 +108,7 @@ TEST(Damping, IsBetaKAtRest)
     Pair pair(kind);
     const fem::OwnedField rest = pair.with.space.zero();
     const fem::OwnedField v = test::nodal(pair.with, some_velocity);
-    tissue::Configuration at;
+    tissue::LinearisationPoint at;
     ASSERT_TRUE(pair.without.tissue.configure(pair.without.space.with_ghosts(rest), at));
     pair.without.tissue.assemble(at, {});
     const fem::OwnedField f = pair.viscous(rest, v);

@@ -54,7 +54,7 @@ TEST(Elements, RemainderOfEveryExactTangentIsQuadratic)
     if (kind.model == Model::linear) continue;
     test::Body body(shape_of(kind), settings_of(kind));
     const fem::OwnedField u = test::nodal(body, deformed), d = test::nodal(body, direction);
-    tissue::Configuration at;
+    tissue::LinearisationPoint at;
     ASSERT_TRUE(body.tissue.configure(body.space.with_ghosts(u), at));
     body.tissue.assemble(at, {});
     const fem::OwnedField K_d = body.tissue.times(d), f = inner_forces(body, u);
@@ -78,7 +78,7 @@ TEST(Elements, MatrixAndElementLoopAreOneOperator)
       settings.materials[0].rayleigh_stiffness = 0.02;
       test::Body body(shape_of(kind), settings);
       const fem::OwnedField u = test::nodal(body, deformed), d = test::nodal(body, direction);
-      tissue::Configuration at;
+      tissue::LinearisationPoint at;
       ASSERT_TRUE(body.tissue.configure(body.space.with_ghosts(u), at));
       body.tissue.assemble(at, {100.0, 100.0});
       const fem::OwnedField by_matrix = body.tissue.times(d);

@@ -146,7 +146,7 @@ fem::GlobalField solved(HeldCube& body, const Manufactured& exact)
   fem::OwnedField inside = given;
   body.tissue.fixed().clear(inside);
   given.value -= inside.value;
-  tissue::Configuration at;
+  tissue::LinearisationPoint at;
   body.tissue.configure(body.space.with_ghosts(given), at);
   load.value -= body.tissue.operate_by_elements(at, {}, given).value;
   return body.space.gather({given.value + body.tissue.factor().answer(load).value});

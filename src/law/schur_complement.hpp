@@ -24,11 +24,11 @@ MatX pseudo_inverse(const MatX& matrix, double cut);
 ///   S = W_ff - W_fb W_bb⁻¹ W_bf,   s = g_f - W_fb W_bb⁻¹ g_b.
 /// Redundant bilateral rows are found by pivoted Cholesky and left out; they are then satisfied by
 /// the others when the rows are consistent, which the residual tells.
-class Condensed
+class SchurComplement
 {
  public:
   /// Factors W_bb. S is made when it is first asked for: where every point slips nobody does.
-  explicit Condensed(const Problem& problem);
+  explicit SchurComplement(const Problem& problem);
 
   const MatX& S();  ///< [m/N]
   const VecX& s();  ///< [m]

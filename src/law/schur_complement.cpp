@@ -1,4 +1,4 @@
-#include "law/condensed.hpp"
+#include "law/schur_complement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ MatX pseudo_inverse(const MatX& matrix, double cut)
   return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
 }
 
-Condensed::Condensed(const Problem& problem)
+SchurComplement::SchurComplement(const Problem& problem)
     : problem_(&problem),
       rows_(split_rows(problem)),
       W_bb_(problem.W(rows_.bilateral, rows_.bilateral)),
@@ -59,12 +59,12 @@ Condensed::Condensed(const Problem& problem)
   }
 }
 
-bool Condensed::bilateral_redundant() const
+bool SchurComplement::bilateral_redundant() const
 {
   return kept_.size() < rows_.bilateral.size();
 }
 
-void Condensed::eliminate()
+void SchurComplement::eliminate()
 {
   if (S_.size() > 0) return;
   S_ = problem_->W(rows_.box, rows_.box);
@@ -75,25 +75,25 @@ void Condensed::eliminate()
   s_ -= Y.transpose() * W_bb_.half_solve(problem_->g(kept_));
 }
 
-const MatX& Condensed::S()
+const MatX& SchurComplement::S()
 {
   eliminate();
   return S_;
 }
 
-const VecX& Condensed::s()
+const VecX& SchurComplement::s()
 {
   eliminate();
   return s_;
 }
 
-int Condensed::box_rank()
+int SchurComplement::box_rank()
 {
   if (rows_.box.empty()) return 0;
   return PivotedCholesky(S(), problem_->W.diagonal()(rows_.box).maxCoeff()).rank();
 }
 
-std::optional<VecX> Condensed::all_slipping() const
+std::optional<VecX> SchurComplement::all_slipping() const
 {
   const VecX& F = bounds().F;
   const auto at_bound = (start_.cwiseAbs().array() >= F.array()).count();
@@ -113,7 +113,7 @@ std::optional<VecX> Condensed::all_slipping() const
 }
 
 /// All multipliers, zero on redundant rows, and their δ.
-VecX Condensed::with_kept_rows(const VecX& lambda_f, VecX& delta) const
+VecX SchurComplement::with_kept_rows(const VecX& lambda_f, VecX& delta) const
 {
   VecX lambda = VecX::Zero(problem_->rows());
   lambda(rows_.box) = lambda_f;
@@ -126,7 +126,7 @@ VecX Condensed::with_kept_rows(const VecX& lambda_f, VecX& delta) const
   return lambda;
 }
 
-VecX Condensed::expand(const VecX& lambda_f) const
+VecX SchurComplement::expand(const VecX& lambda_f) const
 {
   VecX delta;
   const VecX lambda = with_kept_rows(lambda_f, delta);

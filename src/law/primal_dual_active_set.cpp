@@ -74,7 +74,7 @@ int differences(const Sets& a, const Sets& b)
 
 }  // namespace
 
-BoxSolution set_newton(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
+BoxSolution primal_dual_active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
                        double tolerance, int max_iterations)
 {
   const double shift = 0.1 * tolerance / std::max(F.maxCoeff(), 1e-300);
