@@ -69,7 +69,8 @@ class Cavities
   Settings settings_;
   std::vector<Wall> walls_;
   std::vector<VecX> g0_;  ///< volume gradient of the undeformed walls, by vertex [m²]
-  std::vector<std::shared_ptr<const solve::DistributedFunctional>> undeformed_probe_;  ///< of linear cavities
+  std::vector<std::shared_ptr<const solve::DistributedFunctional>>
+      undeformed_probe_;  ///< of linear cavities
   long long versions_ = 0;
 };
 

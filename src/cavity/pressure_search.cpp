@@ -6,8 +6,8 @@ namespace trocar::cavity {
 
 /// How the tissue alone answers to the pressure of every frozen cavity, once for each operator.
 const PressureResponses& PressureSearch::unit_pressure_responses(const State& state,
-                                                               const TimeStep& now,
-                                                               solve::LaggedFactor& factor)
+                                                                 const TimeStep& now,
+                                                                 solve::LaggedFactor& factor)
 {
   constexpr std::size_t most_kept = 2;
   const std::vector<int> which = frozen(*cavities_, state);
@@ -28,8 +28,8 @@ const PressureResponses& PressureSearch::unit_pressure_responses(const State& st
 
 /// The same when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
 PressureResponses PressureSearch::with_rows(const constraint::Laws& laws,
-                                          const PressureResponses& alone,
-                                          solve::LaggedFactor& factor) const
+                                            const PressureResponses& alone,
+                                            solve::LaggedFactor& factor) const
 {
   PressureResponses answers = alone;
   const constraint::System& system = laws.system();

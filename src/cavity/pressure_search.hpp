@@ -27,9 +27,9 @@ class PressureSearch
 
  private:
   const PressureResponses& unit_pressure_responses(const State& state, const TimeStep& now,
-                                                 solve::LaggedFactor& factor);
+                                                   solve::LaggedFactor& factor);
   PressureResponses with_rows(const constraint::Laws& laws, const PressureResponses& alone,
-                            solve::LaggedFactor& factor) const;
+                              solve::LaggedFactor& factor) const;
 
   const Cavities* cavities_;
   core::Ledger* ledger_;

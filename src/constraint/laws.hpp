@@ -23,9 +23,9 @@ struct LawReport
   int outer = 0;                           ///< most solves that state-dependent bounds took
   double contraction = 0.0;                ///< worst ratio of their last two changes
   bool nonunique = false;
-  std::vector<law::BenchmarkResult> trials{};      ///< of the solvers compared
-  solve::ComplianceReport compliance{};  ///< sums over the linearisations
-  int passes = 0;                        ///< sweeps with the laws behind them
+  std::vector<law::BenchmarkResult> trials{};  ///< of the solvers compared
+  solve::ComplianceReport compliance{};        ///< sums over the linearisations
+  int passes = 0;                              ///< sweeps with the laws behind them
   double leftover_gap = 0.0;  ///< what the laws with a stale compliance leave of the gaps [m]
   double stale_error = 0.0;   ///< worst displacement error of that, on request [m]
 };

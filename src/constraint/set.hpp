@@ -70,7 +70,7 @@ struct Row
   std::vector<DistributedTerm> distributed{};
   double compliance = 0.0;           ///< c of a compliant row of the law zero, δ = -c λ [m/N]
   double relative_compliance = 0.0;  ///< more compliance, in units of the row's own W_ii
-  double start = 0.0;              ///< [N]
+  double start = 0.0;                ///< [N]
 
   /// direction · u(anchor) - Σ coefficient · w_dof, the usual row of a needle.
   static Row between(TissueTerm tissue, int body,

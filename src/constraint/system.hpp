@@ -56,7 +56,7 @@ class System
   solve::Probes probes_;
   Sparse H_;
   std::vector<Sparse> jacobians_;  ///< H_n, by body (rows x its dofs)
-  Sparse of_bodies_, own_;      ///< H_n A_n⁻¹ H_nᵀ; with couplings
+  Sparse of_bodies_, own_;         ///< H_n A_n⁻¹ H_nᵀ; with couplings
 };
 
 }  // namespace trocar::constraint

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "core/words.hpp"
 #include "driver/boundary_options.hpp"
@@ -90,7 +93,38 @@ void read_scale(Options& options, cavity::CavitySettings& one, const base::Comm&
     throw bad("cavity_curve", one.name, "beside an initial pressure it must begin with 1");
 }
 
-void read_model(Options& options, cavity::CavitySettings& one, tissue::Model tissue)
+/// Names of the volumes at a wall whose tissue is not linear.
+std::vector<std::string> bending_volumes(const Scenario& scenario, const std::string& surface)
+{
+  const mesh::Mesh& mesh = scenario.mesh;
+  std::set<int> wall;
+  for (int node : mesh::group_nodes(mesh, surface)) wall.insert(node);
+  std::set<std::string> names;
+  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    const auto volume = static_cast<std::size_t>(mesh.region[tet]);
+    if (scenario.tissue.model_of(volume) == tissue::Model::linear) continue;
+    const auto& nodes = mesh.tets[tet];
+    if (std::count_if(nodes.begin(), nodes.end(), [&](int n) { return wall.contains(n); }) >= 3)
+      names.insert(mesh.volumes[volume]);
+  }
+  return {names.begin(), names.end()};
+}
+
+/// `linear` and `frozen` push on the wall as it was undeformed: no nonlinear tissue may be there.
+/// The frozen model's responses to a pressure are kept by operator: all tissue must be linear.
+void require_linear_tissue(const Scenario& scenario, const cavity::CavitySettings& one,
+                           const std::string& model)
+{
+  const std::vector<std::string> bending = bending_volumes(scenario, one.surface);
+  if (!bending.empty())
+    throw bad("cavity_model", one.name,
+              model + " needs linear tissue round its wall, not as in volume '" + bending.front() +
+                  "' (-tissue_model linear, -tissue_" + bending.front() + "_model linear)");
+  if (one.model == cavity::Model::frozen && !scenario.tissue.all_linear())
+    throw bad("cavity_model", one.name, "frozen needs -tissue_model linear in all volumes");
+}
+
+void read_model(Options& options, cavity::CavitySettings& one, const Scenario& scenario)
 {
   const std::map<std::string, cavity::Model> models{{"linear", cavity::Model::linear},
                                                     {"frozen", cavity::Model::frozen},
@@ -98,8 +132,7 @@ void read_model(Options& options, cavity::CavitySettings& one, tissue::Model tis
   const std::string model = options.text("cavity_<cavity>_model", one.name);
   const std::string solver = options.text("cavity_<cavity>_solver", one.name);
   one.model = models.at(model);
-  if (one.model != cavity::Model::follower && tissue != tissue::Model::linear)
-    throw bad("cavity_model", one.name, model + " needs -tissue_model linear");
+  if (one.model != cavity::Model::follower) require_linear_tissue(scenario, one, model);
   if (one.model != cavity::Model::frozen && solver != "auto" && solver != "newton")
     throw bad("cavity_solver", one.name, solver + " is for model frozen only, not " + model);
   if (one.model == cavity::Model::frozen)
@@ -191,7 +224,7 @@ void read_cavities(Options& options, Scenario& scenario, const base::Comm& comm)
     one.caps = options.flag("cavity_<cavity>_cap", name);
     read_law(options, one, comm);
     read_scale(options, one, comm);
-    read_model(options, one, scenario.tissue.model);
+    read_model(options, one, scenario);
     const double density = options.real("cavity_<cavity>_density", name);
     one.weight = density * scenario.tissue.boundary.gravity;
     if (density > 0.0 && one.weight.isZero(0.0))

@@ -37,7 +37,8 @@ void read_compliance(core::Options& options, Scenario& scenario)
   if (tissue.reuse == solve::Reuse::none) tissue.lag_tolerance = 0.0;
   // The eta law is made of the compliance itself, not of what it answers.
   if (scenario.insertion.eta > 0.0) tissue.lag_tolerance = 0.0;
-  const bool turns = tissue.model == tissue::Model::corotational && tissue.lag_tolerance > 0.0;
+  const bool turns = tissue.any(tissue::Model::corotational) &&
+                     !tissue.any(tissue::Model::neo_hookean) && tissue.lag_tolerance > 0.0;
   if (tissue.reuse == solve::Reuse::stale && !turns)
     throw core::option_error(
         "option -compliance_reuse stale: only corotational tissue with a lag has stale columns, "

@@ -31,8 +31,6 @@ std::vector<OptionSpec> general_options()
        "iterated and where pressures follow the walls",
        1e-12, 1e-2, false, false},
       vector("gravity", "0,0,0", "m/s^2", "acceleration of gravity"),
-      choice("tissue_model", "corotational", {"linear", "corotational", "neo_hookean"},
-             "tissue law"),
       choice("tissue_element", "auto", {"auto", "p1", "p1_anp", "p2", "p2_bbar", "p2_anp"},
              "tets: linear, quadratic (middle nodes are added where the mesh has none); _anp: with "
              "nodal, _bbar: with element averages of the dilatation; auto: p2, beyond nu = 0.49 "
@@ -49,6 +47,9 @@ std::vector<OptionSpec> general_options()
 
 void add_tissue(std::vector<OptionSpec>& t)
 {
+  with_override(
+      t, choice("tissue_model", "corotational", {"linear", "corotational", "neo_hookean"}, "law"),
+      "<volume>");
   with_override(t, positive("tissue_young", "5000", "Pa", "Young's modulus"), "<volume>");
   with_override(t, poisson("tissue_poisson", "0.45"), "<volume>");
   with_override(t, positive("tissue_density", "1000", "kg/m^3", "mass density"), "<volume>");

@@ -22,11 +22,20 @@ namespace {
 using core::Options;
 using core::Vec3;
 
+tissue::Model model_named(const std::string& name)
+{
+  const std::map<std::string, tissue::Model> models{{"linear", tissue::Model::linear},
+                                                    {"corotational", tissue::Model::corotational},
+                                                    {"neo_hookean", tissue::Model::neo_hookean}};
+  return models.at(name);
+}
+
 std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh& mesh)
 {
   std::vector<tissue::Material> materials;
   for (const std::string& volume : mesh.volumes) {
     tissue::Material m;
+    m.model = model_named(options.text("tissue_<volume>_model", volume));
     m.young = options.real("tissue_<volume>_young", volume);
     m.poisson = options.real("tissue_<volume>_poisson", volume);
     m.density = options.real("tissue_<volume>_density", volume);
@@ -62,10 +71,7 @@ tissue::TissueSettings read_tissue(Options& options, std::vector<tissue::Materia
                                    const mesh::Mesh& mesh, const base::Comm& comm)
 {
   tissue::TissueSettings settings;
-  const std::map<std::string, tissue::Model> models{{"linear", tissue::Model::linear},
-                                                    {"corotational", tissue::Model::corotational},
-                                                    {"neo_hookean", tissue::Model::neo_hookean}};
-  settings.model = models.at(options.text("tissue_model"));
+  settings.model = model_named(options.text("tissue_model"));
   const std::map<std::string, tissue::Tangent> tangents{{"auto", tissue::Tangent::automatic},
                                                         {"rotated", tissue::Tangent::rotated},
                                                         {"exact", tissue::Tangent::exact}};

@@ -25,10 +25,9 @@ void refuse_idle(const Scenario& scenario)
   };
   refuse(scenario.time.second_order && scenario.time.is_static,
          "time_scheme bdf2: statics have no time derivatives");
-  refuse(scenario.tissue.tangent == tissue::Tangent::exact &&
-             scenario.tissue.model == tissue::Model::linear,
+  refuse(scenario.tissue.tangent == tissue::Tangent::exact && scenario.tissue.all_linear(),
          "tissue_tangent exact: linear tissue has one tangent");
-  refuse(scenario.tissue.allow_inversion && scenario.tissue.model != tissue::Model::linear,
+  refuse(scenario.tissue.allow_inversion && !scenario.tissue.any(tissue::Model::linear),
          "tissue_allow_inversion: only linear tissue has forces where an element is turned inside "
          "out");
   refuse(scenario.output.locking_gauge && scenario.cavities.cavities.empty(),

@@ -46,7 +46,8 @@ void Space::number_nodes(const std::vector<int>& owner)
   for (int& start : starts_) start *= 3;
 }
 
-void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int overlap_layers)
+void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner,
+                               int overlap_layers)
 {
   const int me = comm_.rank();
   std::vector<char> near(owner.size(), 0);  // nodes of the tets so far, those owned here before any

@@ -42,8 +42,8 @@ struct GlobalField
 /// The dof map of linear or quadratic tets: three dofs per node; each rank owns the nodes the
 /// partition gives it, numbered contiguously by rank and in file order within a rank. A rank's
 /// local tets are all tets that touch a node it owns, so that it can assemble its own rows without
-/// communication; with two `overlap_layers` also those that touch a node of these, which elements that share
-/// their dilatation need.
+/// communication; with two `overlap_layers` also those that touch a node of these, which elements
+/// that share their dilatation need.
 class Space
 {
  public:
@@ -90,7 +90,8 @@ class Space
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   void number_nodes(const std::vector<int>& owner);
-  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner, int overlap_layers);
+  void collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& owner,
+                          int overlap_layers);
   void plan_exchange(const std::vector<int>& owner);
 
   base::Comm comm_;

@@ -99,7 +99,7 @@ std::vector<PointOnPath> points_on_path(const Ground& ground, const InsertionSta
 }
 
 RadiusCorrection::Compliance radius_compliance(const Ground& ground, const Site& site, int body,
-                                           double length)
+                                               double length)
 {
   if (!ground.settings.radius_correction) return {};
   return ground.settings.radius_correction->at(
@@ -147,8 +147,8 @@ int add_lateral_rows(const Hold& hold, double compliance, const Vec3& start, int
   return first;
 }
 
-/// Dashpot (compliance, 0: none) and dry friction on one axial row each; `compliance`: of the tissue
-/// next to the shaft.
+/// Dashpot (compliance, 0: none) and dry friction on one axial row each; `compliance`: of the
+/// tissue next to the shaft.
 void add_friction_rows(double dashpot, constraint::Row row, double compliance, PointRows& mine,
                        constraint::Set& set)
 {

@@ -11,7 +11,7 @@ double radius_fit(bool quadratic, bool shared_dilatation)
 }
 
 RadiusCorrection::Compliance RadiusCorrection::at(int needle, int region, double edge,
-                                                double length) const
+                                                  double length) const
 {
   const auto volume = static_cast<std::size_t>(region);
   const double r = radius[static_cast<std::size_t>(needle)];

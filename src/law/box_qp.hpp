@@ -33,7 +33,7 @@ struct BoxSolution
 /// it leaves is at most `tolerance` / 5 [m]; what a regular S determines is exact. `x` is the start
 /// when not finished.
 BoxSolution primal_dual_active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
-                       double tolerance, int max_iterations);
+                                   double tolerance, int max_iterations);
 
 /// The same with pairs (semismooth Newton on the natural map): a pair that slips stays on its
 /// circle, along which the gradient's length is its stiffness. Ends when the box residual is below

@@ -5,8 +5,8 @@
 
 #include "core/stopwatch.hpp"
 #include "core/words.hpp"
-#include "law/schur_complement.hpp"
 #include "law/gauss_seidel.hpp"
+#include "law/schur_complement.hpp"
 
 namespace trocar::law {
 
@@ -31,7 +31,8 @@ VecX interior(SchurComplement& condensed, const Settings& settings, Multipliers&
               result);
 }
 
-VecX active_set_search(SchurComplement& condensed, const VecX& start, const Settings& settings, Multipliers& result)
+VecX active_set_search(SchurComplement& condensed, const VecX& start, const Settings& settings,
+                       Multipliers& result)
 {
   return take(active_set(condensed.S(), condensed.s(), condensed.bounds().F, start,
                          settings.max_iterations),
@@ -62,8 +63,8 @@ VecX automatic(SchurComplement& condensed, const Settings& settings, Multipliers
   if (const std::optional<VecX> slipping = condensed.all_slipping()) return *slipping;
   const MatX& S = condensed.S();
   const VecX& s = condensed.s();
-  const BoxSolution warm =
-      primal_dual_active_set(S, s, condensed.bounds().F, condensed.start(), settings.tolerance, most_warm_sets);
+  const BoxSolution warm = primal_dual_active_set(S, s, condensed.bounds().F, condensed.start(),
+                                                  settings.tolerance, most_warm_sets);
   VecX x = take(warm, result);
   if (!warm.finished || !(box_residual(S, s, condensed.bounds(), x) <= settings.tolerance))
     x = interior(condensed, settings, result);
@@ -71,7 +72,7 @@ VecX automatic(SchurComplement& condensed, const Settings& settings, Multipliers
 }
 
 void check_kkt(const Problem& problem, const Settings& settings, const VecX& lambda,
-           Multipliers& result)
+               Multipliers& result)
 {
   result.lambda = lambda;
   result.residual = kkt_residual(problem, lambda);

@@ -4,8 +4,8 @@
 
 namespace trocar::law {
 
-/// W_ii and compliance of every row [m/N], exactly 0 where nothing can move the row: all its dofs are
-/// prescribed, its gap is what it is.
+/// W_ii and compliance of every row [m/N], exactly 0 where nothing can move the row: all its dofs
+/// are prescribed, its gap is what it is.
 VecX mobility(const Problem& problem);
 
 /// Gives blocks without mobility the multipliers that their gaps ask for, and says in `result`

@@ -75,7 +75,7 @@ int differences(const Sets& a, const Sets& b)
 }  // namespace
 
 BoxSolution primal_dual_active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
-                       double tolerance, int max_iterations)
+                                   double tolerance, int max_iterations)
 {
   const double shift = 0.1 * tolerance / std::max(F.maxCoeff(), 1e-300);
   MatX H = S;

@@ -14,6 +14,7 @@ std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSetti
                                      const base::Comm& comm)
 {
   settings.model = tissue::Model::linear;
+  for (tissue::Material& material : settings.materials) material.model.reset();
   settings.ordered_last.clear();
   core::Ledger ledger;
   const fem::Space space(mesh, mesh::partition_nodes(mesh, comm), comm,

@@ -16,7 +16,7 @@ struct WholePattern
   std::vector<int> row, column;    ///< by block
   std::vector<bool> free;          ///< by dof, 3 node + axis
   std::vector<int> first_of_rank;  ///< first node of every rank, and the number of nodes
-  std::vector<int> ordered_last;         ///< nodes to be eliminated last
+  std::vector<int> ordered_last;   ///< nodes to be eliminated last
   int most_shared =
       most_interface;  ///< dofs of the interface beyond which nothing but it is wanted
 
@@ -56,8 +56,8 @@ struct Dissection
     std::size_t source;
   };
   std::vector<InterfaceEntry> interface_entries;
-  int ordered_last = 0;      ///< nodes that were put last
-  double flops = 0.0;  ///< of all factors
+  int ordered_last = 0;  ///< nodes that were put last
+  double flops = 0.0;    ///< of all factors
 };
 
 /// Shares the elimination out. The interface holds the nodes with a neighbour of a higher rank.

@@ -71,7 +71,7 @@ class KspCompliance final : public IsolatedCompliance
     int node = -1;  ///< file node, -1 for a wide probe
     int axis = 0;
     const DistributedFunctional* wide = nullptr;  ///< only valid while it is being built
-    bool fixed = false;               ///< zero by definition, never solved for
+    bool fixed = false;                           ///< zero by definition, never solved for
   };
 
   std::vector<int> slots_of(const Probes& probes, std::vector<int>& missing);

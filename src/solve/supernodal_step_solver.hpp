@@ -69,7 +69,7 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   bool reuse_;
   double bytes_ = 0.0, memory_ = 0.0;
   double sweeps_per_factor_ = 0.0;
-  int ordered_last_ = 0;                               ///< nodes put last
+  int ordered_last_ = 0;                         ///< nodes put last
   std::vector<int> value_count_, value_start_;   ///< doubles of every rank's blocks
   std::vector<int> interface_;                   ///< whole dofs of the interface, ascending
   std::vector<int> open_;                        ///< place in the interface of every open dof

@@ -92,7 +92,7 @@ Outcome<Accepted> accept(const Model& model, const State& old, const Scheme& sch
   if (!boundary.displacements.empty() || !boundary.fixed.empty())
     report.holders =
         model.tissue.reactions(scheme.past().tissue, next.tissue.u, now,
-                                   newton.solution().forces(model, next, newton.walls(), now));
+                               newton.solution().forces(model, next, newton.walls(), now));
   if (model.cavities) accept_cavities(model, now, newton);
   accept_needles(model, newton);
   model.tissue.remember_factor(next.tissue);

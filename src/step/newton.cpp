@@ -26,7 +26,7 @@ Newton::Effort Newton::effort_of(const Model& model, const core::TimeStep& now)
   constexpr int most = 50;
   constexpr double automatic_first = 1e-3, automatic = 1e-6;
   const double tolerance = model.scene.tissue.newton_tolerance;
-  const bool bends = model.scene.tissue.model != tissue::Model::linear;
+  const bool bends = !model.scene.tissue.all_linear();
   if (now.is_static || model.follows()) return {most, 0.0, tolerance, true};
   const int told = model.scene.time.newton_max;
   if (told > 1) return {told, 0.0, tolerance, true};

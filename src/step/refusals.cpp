@@ -25,7 +25,8 @@ std::string inverted_at(const Scene& scene, int tet)
   Vec3 middle = Vec3::Zero();
   for (const Vec3& corner : mesh::corners(mesh, tet)) middle += 0.25 * corner;
   const auto at = static_cast<std::size_t>(tet);
-  const bool is_linear = scene.tissue.model == tissue::Model::linear;
+  const tissue::Model model = scene.tissue.model_of(static_cast<std::size_t>(mesh.region[at]));
+  const bool is_linear = model == tissue::Model::linear;
   std::ostringstream text;
   text << "an element of the tissue would turn inside out: tet " << mesh.elem_tag[at]
        << " of volume '" << mesh.volumes[static_cast<std::size_t>(mesh.region[at])] << "' near "
@@ -33,7 +34,7 @@ std::string inverted_at(const Scene& scene, int tet)
        << (is_linear ? "; linear tissue is for small strains (take -tissue_model corotational, or "
                        "accept it with -tissue_allow_inversion)"
                      : "; shorter steps or a finer mesh there may help");
-  if (scene.tissue.model == tissue::Model::corotational)
+  if (model == tissue::Model::corotational)
     text << ", or -tissue_model neo_hookean, which resists being crushed";
   return text.str();
 }

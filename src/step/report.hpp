@@ -25,7 +25,7 @@ struct StepReport : constraint::LawReport
   std::vector<NeedleReport> needles;
   std::vector<cavity::CavityReport> cavities;
   tissue::Reactions holders;  ///< of prescribed displacements and supports
-  int pressure_updates = 0;      ///< of frozen cavities
+  int pressure_updates = 0;   ///< of frozen cavities
   int linearisations = 0;
   double unbalanced = 0.0;  ///< what the end of the step leaves, see docs/theory.md section 1
   int folded = -1;          ///< tet that linear tissue was allowed to fold; -1: none

@@ -38,8 +38,8 @@ struct Scene
   cavity::Settings cavities;
   law::Settings laws;
   std::vector<law::BenchmarkCase> compare;  ///< solvers to be timed beside it
-  bool energy = false;                  ///< keep the energy account
-  bool stale_error = false;             ///< solve steps with a stale compliance exactly as well
+  bool energy = false;                      ///< keep the energy account
+  bool stale_error = false;                 ///< solve steps with a stale compliance exactly as well
 };
 
 }  // namespace trocar::step

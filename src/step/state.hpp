@@ -82,7 +82,7 @@ struct State
   std::vector<insertion::InsertionState> insertions;  ///< by needle
   cavity::State cavities;
   std::optional<PreviousStep> before;  ///< with -time_scheme bdf2 only
-  EnergyAccount energy;          ///< kept with -output_energy only
+  EnergyAccount energy;                ///< kept with -output_energy only
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>

@@ -81,7 +81,8 @@ void ElementsOf<N>::add_averaged(const core::VecX& theta, core::VecX& p) const
 
 /// ∂θ/∂F : grad d at the points.
 template <int N>
-core::VecX ElementsOf<N>::dilatation_rates(const LinearisationPoint& at, const GhostedField& d) const
+core::VecX ElementsOf<N>::dilatation_rates(const LinearisationPoint& at,
+                                           const GhostedField& d) const
 {
   core::VecX theta(static_cast<Eigen::Index>(shapes_.size()));
   for (std::size_t e = 0; e < tets(); ++e) {
@@ -104,9 +105,9 @@ void ElementsOf<N>::put_dilatations(std::size_t e, const LinearisationPoint& at,
     const Mat3& R = at.R[point];
     const Mat3 G = gradient(u, point);
     double& mine = theta[static_cast<Eigen::Index>(point)];
-    mine = energy::dilatation(settings_.model, R, G);
+    mine = energy::dilatation(model(e), R, G);
     if (beta > 0.0 && motion.v.value.size() > 0)
-      mine += beta * energy::dilatation_gradient(settings_.model, R, G)
+      mine += beta * energy::dilatation_gradient(model(e), R, G)
                          .cwiseProduct(gradient(nodal(motion.v, e), point))
                          .sum();
   }
@@ -122,18 +123,20 @@ core::VecX ElementsOf<N>::pressures(const LinearisationPoint& at, const Kinemati
 }
 
 template <int N>
-core::VecX ElementsOf<N>::linearised_pressures(const LinearisationPoint& last, const GhostedField& d) const
+core::VecX ElementsOf<N>::linearised_pressures(const LinearisationPoint& last,
+                                               const GhostedField& d) const
 {
   core::VecX theta = dilatation_rates(last, d);
   for (std::size_t point = 0; point < shapes_.size(); ++point)
     theta[static_cast<Eigen::Index>(point)] +=
-        energy::dilatation(settings_.model, last.R[point], last.G[point]);
+        energy::dilatation(model(point / points), last.R[point], last.G[point]);
   return pressure_of(theta);
 }
 
 template <int N>
-void ElementsOf<N>::add_tet_forces(std::size_t e, const LinearisationPoint& at, const Kinematics& motion,
-                                   const core::VecX& p, ForceSums& sums) const
+void ElementsOf<N>::add_tet_forces(std::size_t e, const LinearisationPoint& at,
+                                   const Kinematics& motion, const core::VecX& p,
+                                   ForceSums& sums) const
 {
   const Material& m = material(e);
   const bool moves = motion.v.value.size() > 0;
@@ -144,14 +147,14 @@ void ElementsOf<N>::add_tet_forces(std::size_t e, const LinearisationPoint& at, 
   for (std::size_t point = points * e; point < points * (e + 1); ++point) {
     const Mat3& R = at.R[point];
     const Mat3 G = gradient(u, point);
-    const Mat3 by = energy::dilatation_gradient(settings_.model, R, G);
-    const Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, G);
+    const Mat3 by = energy::dilatation_gradient(model(e), R, G);
+    const Mat3 P = m.mu() * energy::shear_gradient(model(e), R, G);
     const double pressure = averaged() ? p[static_cast<Eigen::Index>(point)]
-                                       : m.lambda() * energy::dilatation(settings_.model, R, G);
+                                       : m.lambda() * energy::dilatation(model(e), R, G);
     force += shapes_[point].volume * (P + pressure * by) * shapes_[point].gradient;
     if (beta == 0.0) continue;
     const Mat3 D = gradient(v, point);
-    Mat3 viscous = m.mu() * energy::viscous_shear(settings_.model, R, G, D);
+    Mat3 viscous = m.mu() * energy::viscous_shear(model(e), R, G, D);
     if (!averaged()) viscous += m.lambda() * by.cwiseProduct(D).sum() * by;
     damping += beta * shapes_[point].volume * viscous * shapes_[point].gradient;
   }
@@ -176,8 +179,9 @@ void ElementsOf<N>::add_forces(const LinearisationPoint& at, const Kinematics& m
 }
 
 template <int N>
-void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets, const LinearisationPoint& at,
-                                  const Kinematics& motion, ForceSums& sums) const
+void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets,
+                                  const LinearisationPoint& at, const Kinematics& motion,
+                                  ForceSums& sums) const
 {
   core::VecX p;
   if (averaged()) {  // right at these tets alone
@@ -232,13 +236,13 @@ TetWork ElementsOf<N>::work(const LinearisationPoint& at, const Kinematics& moti
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {
       const Mat3& R = at.R[point];
       const Mat3 G = gradient(u, point);
-      const double theta = energy::dilatation(settings_.model, R, G);
-      work.elastic += shapes_[point].volume * (m.mu() * energy::shear(settings_.model, R, G) +
+      const double theta = energy::dilatation(model(e), R, G);
+      work.elastic += shapes_[point].volume * (m.mu() * energy::shear(model(e), R, G) +
                                                0.5 * p[static_cast<Eigen::Index>(point)] * theta);
       if (!moves || m.rayleigh_stiffness == 0.0) continue;
       const auto i = static_cast<Eigen::Index>(point);
       const Mat3 D = gradient(v, point);
-      const Mat3 viscous = energy::viscous_shear(settings_.model, R, G, D);
+      const Mat3 viscous = energy::viscous_shear(model(e), R, G, D);
       work.damping_power_stiffness +=
           m.rayleigh_stiffness * shapes_[point].volume *
           (m.mu() * viscous.cwiseProduct(D).sum() + p_rate[i] * rate[i]);
@@ -269,16 +273,16 @@ StressField ElementsOf<N>::stresses(const LinearisationPoint& at, const GhostedF
       const Mat3& R = at.R[point];
       const Mat3 G = gradient(values, point);
       const double pressure = p[static_cast<Eigen::Index>(point)];
-      const Mat3 P = m.mu() * energy::shear_gradient(settings_.model, R, G) +
-                     pressure * energy::dilatation_gradient(settings_.model, R, G);
-      const Mat3 s = settings_.model == Model::linear ? P : cauchy_stress(P, Mat3::Identity() + G);
+      const Mat3 P = m.mu() * energy::shear_gradient(model(e), R, G) +
+                     pressure * energy::dilatation_gradient(model(e), R, G);
+      const Mat3 s = model(e) == Model::linear ? P : cauchy_stress(P, Mat3::Identity() + G);
       const double part = shapes_[point].volume / volume_[e];
       auto six = of_point.col(static_cast<Eigen::Index>(point - points * e));
       six << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
       sums.stress.segment<6>(6 * static_cast<Eigen::Index>(e)) += part * six;
       sums.energy[static_cast<Eigen::Index>(e)] +=
-          part * (m.mu() * energy::shear(settings_.model, R, G) +
-                  0.5 * pressure * energy::dilatation(settings_.model, R, G));
+          part * (m.mu() * energy::shear(model(e), R, G) +
+                  0.5 * pressure * energy::dilatation(model(e), R, G));
     }
     if constexpr (N == 10)
       sums.corner.segment<24>(24 * static_cast<Eigen::Index>(e)) =

@@ -12,7 +12,7 @@ namespace trocar::tissue {
 template <int N>
 ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
                           const ElementSettings& settings)
-    : space_(&space), settings_(settings)
+    : space_(&space), settings_(settings), exact_(settings.exact_tangent())
 {
   shapes_.reserve(points * space.tets());
   for (std::size_t e = 0; e < space.tets(); ++e) {
@@ -24,6 +24,11 @@ ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
     volume_.push_back(volume);
     region_.push_back(mesh.region[static_cast<std::size_t>(space.file_tet(e))]);
   }
+  for (std::size_t volume = 0; volume < settings_.materials.size(); ++volume)
+    models_.push_back(settings_.model_of(volume));
+  if (settings_.any(Model::linear) && !settings_.all_linear())
+    for (std::size_t point = 0; point < shapes_.size(); ++point)
+      if (model(point / points) != Model::linear) turning_.push_back(point);
   straight_mass_ = fem::straight_mass<N>();
   if constexpr (N == 10) measure_curved_masses(mesh);
   if (settings_.mass == Mass::lumped) lump_masses();
@@ -158,15 +163,12 @@ template <int N>
 bool ElementsOf<N>::configure(const GhostedField& u, LinearisationPoint& at) const
 {
   const std::size_t count = shapes_.size();
-  if (settings_.model == Model::linear) {
-    if (at.R.size() != count) at.R.assign(count, Mat3::Identity());
-    return true;
-  }
-  at.R.resize(count);
+  if (at.R.size() != count) at.R.assign(count, Mat3::Identity());
+  if (settings_.all_linear()) return true;
   at.G.resize(exact() ? count : 0);
-  if (!rotate(
-          u, [](std::size_t k) { return k; }, count, at.R))
-    return false;
+  const bool all = !settings_.any(Model::linear);
+  const auto point_of = [&](std::size_t k) { return all ? k : turning_[k]; };
+  if (!rotate(u, point_of, all ? count : turning_.size(), at.R)) return false;
   if (!exact()) return true;
   for (std::size_t point = 0; point < count; ++point)
     at.G[point] = gradient(nodal(u, point / points), point);
@@ -197,8 +199,9 @@ void ElementsOf<N>::configure_for(const std::vector<std::size_t>& tets, const Gh
                                   LinearisationPoint& at) const
 {
   at.R.assign(shapes_.size(), Mat3::Identity());
-  if (settings_.model != Model::corotational) return;
-  const std::vector<std::size_t> here = with_patches(tets);
+  if (!settings_.any(Model::corotational)) return;
+  std::vector<std::size_t> here = with_patches(tets);
+  std::erase_if(here, [this](std::size_t e) { return model(e) != Model::corotational; });
   const auto point_of = [&](std::size_t k) { return points * here[k / points] + k % points; };
   rotate(u, point_of, points * here.size(), at.R);
 }
@@ -214,6 +217,10 @@ std::vector<Mat3> ElementsOf<N>::turns(const std::vector<Mat3>& R,
       turn += shapes_[point].volume * R[point] * R_old[point].transpose();
     for (int node : space_->nodes(e)) sum[static_cast<std::size_t>(node)] += turn;
   }
+  const bool mixed = !turning_.empty();
+  for (std::size_t e = 0; mixed && e < tets(); ++e)
+    if (model(e) == Model::linear)
+      for (int node : space_->nodes(e)) sum[static_cast<std::size_t>(node)].setIdentity();
   return sum;
 }
 

@@ -16,7 +16,7 @@ void ElementsOf<N>::add_sizes(std::size_t e, const Kinematics& motion, const Nod
   const Material& m = material(e);
   const Nodal u = nodal(motion.u, e);
   const Eigen::Matrix<double, N, 1> moved = u.colwise().template lpNorm<1>().transpose();
-  const double formed = settings_.model == Model::linear ? 0.0 : 1.0;
+  const double formed = model(e) == Model::linear ? 0.0 : 1.0;
   const double damped = 1.0 + 2.0 * m.rayleigh_stiffness * motion.rates.velocity;
   const double modulus = m.lambda() + 2.0 * m.mu();
   Eigen::Matrix<double, N, 1> rounding =

@@ -11,6 +11,14 @@ std::unique_ptr<Elements> Elements::make(const mesh::Mesh& mesh, const fem::Spac
   return std::make_unique<ElementsOf<4>>(mesh, space, settings);
 }
 
+bool ElementSettings::any(Model one) const
+{
+  if (materials.empty()) return model == one;
+  for (std::size_t volume = 0; volume < materials.size(); ++volume)
+    if (model_of(volume) == one) return true;
+  return false;
+}
+
 bool LinearisationPoint::operator==(const LinearisationPoint& other) const
 {
   return R == other.R && G == other.G && p == other.p;

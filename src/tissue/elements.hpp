@@ -35,17 +35,21 @@ inline int overlap_layers(Dilatation dilatation)
 
 struct ElementSettings
 {
-  Model model = Model::corotational;
+  Model model = Model::corotational;  ///< of the volumes whose material names none
   Mass mass = Mass::consistent;
   Dilatation dilatation = Dilatation::pointwise;
   Tangent tangent = Tangent::automatic;
   std::vector<Material> materials;  ///< by volume of the mesh
 
+  Model model_of(std::size_t volume) const { return materials[volume].model.value_or(model); }
+  /// Some volume has this model.
+  bool any(Model one) const;
+  /// No volume has another model: the operator is the same everywhere.
+  bool all_linear() const { return !any(Model::corotational) && !any(Model::neo_hookean); }
   /// The operator is the whole derivative of the forces: it may be indefinite.
   bool exact_tangent() const
   {
-    return model == Model::neo_hookean ||
-           (model == Model::corotational && tangent == Tangent::exact);
+    return any(Model::neo_hookean) || (any(Model::corotational) && tangent == Tangent::exact);
   }
 };
 
@@ -114,7 +118,8 @@ class Elements
   /// Pressures [Pa] to which the linearisation `last` leads with the further displacement d: what
   /// Newton's method has for them when they are unknowns of their own. In the tangent they serve
   /// better than λθ, which after a finite step is λ times the square of the strain off.
-  virtual core::VecX linearised_pressures(const LinearisationPoint& last, const GhostedField& d) const = 0;
+  virtual core::VecX linearised_pressures(const LinearisationPoint& last,
+                                          const GhostedField& d) const = 0;
   /// As far as the forces of some tets need it.
   virtual void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                              LinearisationPoint& at) const = 0;
@@ -144,7 +149,8 @@ class Elements
 
   /// Adds ρ V N_a g to the nodes [N].
   virtual void add_weight(const core::Vec3& gravity, OwnedField& force) const = 0;
-  /// Volume-weighted sum of the turns R R₀ᵀ around every local node [m³].
+  /// Volume-weighted sum of the turns R R₀ᵀ around every local node [m³]; identities at nodes that
+  /// linear tissue has a part in, which does not turn.
   virtual std::vector<Mat3> turns(const std::vector<Mat3>& R,
                                   const std::vector<Mat3>& R_old) const = 0;
 };

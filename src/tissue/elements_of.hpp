@@ -23,11 +23,12 @@ class ElementsOf final : public Elements
   const fem::Cliques& cliques() const override { return cliques_; }
   int folded(const GhostedField& u) const override;
   bool configure(const GhostedField& u, LinearisationPoint& at) const override;
-  core::VecX linearised_pressures(const LinearisationPoint& last, const GhostedField& d) const override;
+  core::VecX linearised_pressures(const LinearisationPoint& last,
+                                  const GhostedField& d) const override;
   void configure_for(const std::vector<std::size_t>& tets, const GhostedField& u,
                      LinearisationPoint& at) const override;
-  void assemble(const LinearisationPoint& at, const core::Rates& rate, const fem::BlockPattern& pattern,
-                fem::BlockMatrix& values) const override;
+  void assemble(const LinearisationPoint& at, const core::Rates& rate,
+                const fem::BlockPattern& pattern, fem::BlockMatrix& values) const override;
   OwnedField operate(const LinearisationPoint& at, const core::Rates& rate,
                      const GhostedField& d) const override;
   void add_forces(const LinearisationPoint& at, const Kinematics& motion,
@@ -35,7 +36,11 @@ class ElementsOf final : public Elements
   void add_forces_of(const std::vector<std::size_t>& tets, const LinearisationPoint& at,
                      const Kinematics& motion, ForceSums& sums) const override;
   void add_inertia(const Kinematics& motion, OwnedField& inertia) const override;
-  void take(Tangent tangent) override { settings_.tangent = tangent; }
+  void take(Tangent tangent) override
+  {
+    settings_.tangent = tangent;
+    exact_ = settings_.exact_tangent();
+  }
   TetWork work(const LinearisationPoint& at, const Kinematics& motion) const override;
   StressField stresses(const LinearisationPoint& at, const GhostedField& u) const override;
   void add_weight(const core::Vec3& gravity, OwnedField& force) const override;
@@ -52,6 +57,7 @@ class ElementsOf final : public Elements
   {
     return settings_.materials[static_cast<std::size_t>(region_[e])];
   }
+  Model model(std::size_t e) const { return models_[static_cast<std::size_t>(region_[e])]; }
   bool averaged() const { return settings_.dilatation != Dilatation::pointwise; }
   /// The part of λ that multiplies the dilatation at the point itself [Pa].
   double lambda_at_point(const Material& m) const
@@ -61,7 +67,7 @@ class ElementsOf final : public Elements
     return split ? std::min(m.lambda(), most_at_point * m.mu()) : 0.0;
   }
   double lambda_of_mean(const Material& m) const { return m.lambda() - lambda_at_point(m); }
-  bool exact() const { return settings_.exact_tangent(); }
+  bool exact() const { return exact_; }
 
   Nodal nodal(const GhostedField& field, std::size_t e) const;
   void scatter(const Nodal& values, std::size_t e, OwnedField& field) const;
@@ -72,7 +78,7 @@ class ElementsOf final : public Elements
   /// ∂θ/∂F in the configuration `at`.
   Mat3 dilatation_gradient(const LinearisationPoint& at, std::size_t point) const
   {
-    return exact() ? energy::dilatation_gradient(settings_.model, at.R[point], at.G[point])
+    return exact() ? energy::dilatation_gradient(model(point / points), at.R[point], at.G[point])
                    : at.R[point];
   }
   /// Mass matrix of a tet over its ρ [m³]: a form and its factor.
@@ -114,10 +120,13 @@ class ElementsOf final : public Elements
 
   const fem::Space* space_;
   ElementSettings settings_;
-  std::vector<fem::PointShape<N>> shapes_;               ///< by point
-  std::vector<int> region_;                              ///< by local tet
-  std::vector<double> volume_;                           ///< by local tet [m³]
-  Scalar straight_mass_;                                 ///< of a straight tet of unit volume
+  bool exact_;                              ///< the tangent is
+  std::vector<fem::PointShape<N>> shapes_;  ///< by point
+  std::vector<int> region_;                 ///< by local tet
+  std::vector<Model> models_;               ///< by volume of the mesh
+  std::vector<std::size_t> turning_;  ///< points of tissue that is not linear; empty: all or none
+  std::vector<double> volume_;        ///< by local tet [m³]
+  Scalar straight_mass_;              ///< of a straight tet of unit volume
   std::unordered_map<std::size_t, Scalar> curved_mass_;  ///< of curved ones, over ρ [m³]
   fem::Cliques cliques_;
   std::optional<Patches> patches_;  ///< only with nodal dilatation
@@ -126,18 +135,19 @@ class ElementsOf final : public Elements
 /// (∂P/∂F + r_v ∂P/∂Ḟ) : D at a point, stress and viscous stress, without what a shared dilatation
 /// adds [Pa].
 template <int N>
-Mat3 ElementsOf<N>::increment(const LinearisationPoint& at, const core::Rates& rate, std::size_t point,
-                              const Mat3& D) const
+Mat3 ElementsOf<N>::increment(const LinearisationPoint& at, const core::Rates& rate,
+                              std::size_t point, const Mat3& D) const
 {
   const Material& m = material(point / points);
+  const Model law = model(point / points);
   const Mat3& R = at.R[point];
   const Mat3 G = exact() ? at.G[point] : Mat3::Zero();
   const double damping = m.rayleigh_stiffness * rate.velocity;
-  Mat3 P = m.mu() * energy::shear_increment(settings_.model, settings_.tangent, R, G, D);
-  if (damping > 0.0) P += damping * m.mu() * energy::viscous_shear(settings_.model, R, G, D);
+  Mat3 P = m.mu() * energy::shear_increment(law, settings_.tangent, R, G, D);
+  if (damping > 0.0) P += damping * m.mu() * energy::viscous_shear(law, R, G, D);
   if (exact())
     P += at.p[static_cast<Eigen::Index>(point)] *
-         energy::dilatation_increment(settings_.model, settings_.tangent, R, G, D);
+         energy::dilatation_increment(law, settings_.tangent, R, G, D);
   const double lambda = lambda_at_point(m);
   if (lambda == 0.0) return P;
   const Mat3 by = dilatation_gradient(at, point);

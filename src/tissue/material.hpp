@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 namespace trocar::tissue {
 
 enum class Model { linear, corotational, neo_hookean };
@@ -16,6 +18,7 @@ struct Material
   double density = 1000.0;          ///< ρ [kg/m³]
   double rayleigh_mass = 0.0;       ///< α [1/s] in B = αM + βK
   double rayleigh_stiffness = 0.0;  ///< β [s]
+  std::optional<Model> model{};     ///< of this tissue; empty: that of all
 
   double lambda() const  ///< first Lamé constant [Pa]
   {

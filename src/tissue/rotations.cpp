@@ -7,7 +7,7 @@ namespace trocar::tissue {
 /// Rotations of the nodes since the factor was made, in file order: of the volume-weighted mean of
 /// the tets around each. Nodes with a fixed axis do not turn: the supports do not turn with them.
 std::vector<Mat3> Tissue::node_rotations(const std::vector<Mat3>& R,
-                                       const std::vector<Mat3>& R_factor) const
+                                         const std::vector<Mat3>& R_factor) const
 {
   const std::vector<Mat3> sum = elements_->turns(R, R_factor);
   std::array<OwnedField, 3> column{space_->zero(), space_->zero(), space_->zero()};

@@ -8,9 +8,10 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 {
   const bool led = goes_on && exact_at_ && tangent_.exact();
   core::VecX p;
-  if (led) p = elements_->linearised_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
-  const bool known = configured_.u && configured_.exact == tangent_.exact() &&
-                     !tangent_.exact() && configured_.u->value == iterate.value;
+  if (led)
+    p = elements_->linearised_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
+  const bool known = configured_.u && configured_.exact == tangent_.exact() && !tangent_.exact() &&
+                     configured_.u->value == iterate.value;
   bool admissible = true;  // else the balance would have been found where an element is folded
   known_ = space_->comm().all(known);
   if (known_)
@@ -26,7 +27,7 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 /// The factor of an operator may serve later ones.
 bool Tissue::may_lag() const
 {
-  return settings_.model != Model::linear && settings_.lag_tolerance > 0.0 &&
+  return !settings_.all_linear() && settings_.lag_tolerance > 0.0 &&
          current_->factor.solver().can_turn();
 }
 
@@ -37,8 +38,8 @@ core::Outcome<core::Done> Tissue::make_factor(const LinearisationPoint& at)
   if (!made)
     current_->rate.reset();
   else if (may_lag())
-    current_->made = std::make_shared<const FactorOrigin>(
-        FactorOrigin{*current_->rate, at, tangent_.exact()});
+    current_->made =
+        std::make_shared<const FactorOrigin>(FactorOrigin{*current_->rate, at, tangent_.exact()});
   return made;
 }
 

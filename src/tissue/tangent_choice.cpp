@@ -5,8 +5,12 @@ namespace trocar::tissue {
 TangentChoice::TangentChoice(ElementSettings& settings, Elements& elements)
     : settings_(&settings),
       elements_(&elements),
-      automatic_(settings.model == Model::corotational && settings.tangent == Tangent::automatic)
+      automatic_(settings.any(Model::corotational) && !settings.any(Model::neo_hookean) &&
+                 settings.tangent == Tangent::automatic)
 {
+  // Beside neo-Hookean tissue, whose tangent is always exact, held rotations would save nothing.
+  if (settings.any(Model::neo_hookean) && settings.tangent == Tangent::automatic)
+    set(Tangent::exact);
 }
 
 void TangentChoice::begin_step()

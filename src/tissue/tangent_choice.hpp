@@ -4,9 +4,9 @@
 
 namespace trocar::tissue {
 
-/// Which tangent the operator has. With `Tangent::automatic` every step begins with the rotated one,
-/// may take the exact one from some linearisation on, and goes back for the rest of the step when
-/// that has no factor. Others never change.
+/// Which tangent the operator has. With `Tangent::automatic` every step begins with the rotated
+/// one, may take the exact one from some linearisation on, and goes back for the rest of the step
+/// when that has no factor. Others never change.
 class TangentChoice
 {
  public:

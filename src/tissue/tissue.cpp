@@ -42,11 +42,11 @@ bool Tissue::configure(const fem::GhostedField& u, LinearisationPoint& at) const
 
 void Tissue::analyse()
 {
-  const bool turns = settings_.model != Model::linear && settings_.lag_tolerance > 0.0;
+  const bool turns = !settings_.all_linear() && settings_.lag_tolerance > 0.0;
   std::unique_ptr<solve::StepSolver> solver = solve::make_step_solver(
-      settings_.provider,
-      {*space_, pattern_, fixed_, mesh_->x, settings_.ordered_last, settings_.reuse != solve::Reuse::none,
-       settings_.most_memory, turns, settings_.linear, *ledger_});
+      settings_.provider, {*space_, pattern_, fixed_, mesh_->x, settings_.ordered_last,
+                           settings_.reuse != solve::Reuse::none, settings_.most_memory, turns,
+                           settings_.linear, *ledger_});
   if (settings_.reuse == solve::Reuse::stale && !solver->can_turn())
     throw core::solver_error("stale reuse keeps a factor, but the tissue solver is " +
                              solver->describe());
@@ -58,7 +58,7 @@ void Tissue::analyse()
 Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
 {
   constexpr std::size_t most_kept = 2;
-  const bool linear = settings_.model == Model::linear;
+  const bool linear = settings_.all_linear();
   const auto known = std::find_if(operators_.begin(), operators_.end(), [&](const Operator& o) {
     return !linear || o.rate == rate || !o.rate;
   });
@@ -73,7 +73,7 @@ Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
 core::Outcome<core::Done> Tissue::use_operator(const LinearisationPoint& at, const TimeStep& step)
 {
   const core::Rates rate = step.rates();
-  const bool linear = settings_.model == Model::linear;
+  const bool linear = settings_.all_linear();
   current_ = &operator_for(rate);
   solve::LaggedFactor& factor = current_->factor;
   const bool same_rates = current_->rate == rate;

@@ -27,7 +27,7 @@ struct TissueSettings : ElementSettings
   solve::Reuse reuse = solve::Reuse::exact;
   int stale_steps = 10;      ///< that share a factor with Reuse::stale
   double most_memory = 0.0;  ///< that a factor of our own may take [B], 0: a part of what is free
-  std::vector<int> ordered_last;   ///< file nodes that needles are planned to reach
+  std::vector<int> ordered_last;  ///< file nodes that needles are planned to reach
   /// Equilibrium that a step with an older factor must reach, of its load; 0: always factor anew.
   double lag_tolerance = 0.0;
   bool allow_inversion = false;  ///< of linear tissue, which feels nothing of it
@@ -39,8 +39,8 @@ struct TissueSettings : ElementSettings
 struct FactorOrigin
 {
   core::Rates rates;
-  LinearisationPoint at;    ///< where
-  bool exact = false;  ///< with the exact tangent
+  LinearisationPoint at;  ///< where
+  bool exact = false;     ///< with the exact tangent
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>
@@ -138,7 +138,7 @@ class Tissue
   /// Forces by which prescribed displacements and supports hold the tissue, `more` [N] being those
   /// of rows and cavities. Costs the elements there. Collective.
   Reactions reactions(const TissueState& old, const OwnedField& u, const TimeStep& step,
-                             const OwnedField& more) const;
+                      const OwnedField& more) const;
 
   /// In file order, equal on every rank. Only on request: an element loop, and all tets on every
   /// rank. Collective.
@@ -176,7 +176,7 @@ class Tissue
   {
     solve::LaggedFactor factor;
     std::optional<core::Rates> rate{};           ///< none: not assembled yet, or to be again
-    LinearisationPoint at{};                          ///< it was assembled with; empty for linear tissue
+    LinearisationPoint at{};                     ///< it was assembled with; empty for linear tissue
     std::shared_ptr<const FactorOrigin> made{};  ///< from what its factor was; linear tissue: none
   };
 
@@ -190,7 +190,7 @@ class Tissue
   Operator& operator_for(const core::Rates& rate);
   bool factor_worn() const;
   std::vector<Mat3> node_rotations(const std::vector<Mat3>& R,
-                                 const std::vector<Mat3>& R_factor) const;
+                                   const std::vector<Mat3>& R_factor) const;
   OwnedField prescribed_increment(const OwnedField& iterate, const TimeStep& step) const;
   OwnedField forces(const TissueState& old, const OwnedField& u, const LinearisationPoint& at,
                     const TimeStep& step, Sizes* sizes = nullptr) const;
@@ -198,7 +198,8 @@ class Tissue
   OwnedField forces_from_balance(const TissueState& old, const OwnedField& u, const TimeStep& step,
                                  bool goes_on) const;
   OwnedField forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
-                       const OwnedField& u, const LinearisationPoint& at, const TimeStep& step) const;
+                       const OwnedField& u, const LinearisationPoint& at,
+                       const TimeStep& step) const;
   Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
   Sizes no_sizes() const;
   /// Norm of what need not be balanced: a part of the sizes, and what rounding leaves [N].
@@ -216,7 +217,7 @@ class Tissue
   TangentChoice tangent_;
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
-  LinearisationPoint at_;       ///< of the present linearisation
+  LinearisationPoint at_;  ///< of the present linearisation
   OwnedField u_at_;        ///< where that is, with an exact tangent [m]
   bool exact_at_ = false;  ///< it is that of an exact tangent; equal on all ranks
   struct

@@ -44,12 +44,12 @@ void Tissue::find_holders()
       }
 }
 
-Reactions Tissue::reactions(const TissueState& old, const OwnedField& u,
-                                   const TimeStep& step, const OwnedField& more) const
+Reactions Tissue::reactions(const TissueState& old, const OwnedField& u, const TimeStep& step,
+                            const OwnedField& more) const
 {
   // Linear tissue is configured the same everywhere.
   LinearisationPoint here;
-  const bool linear = settings_.model == Model::linear;
+  const bool linear = settings_.all_linear();
   if (!linear) elements_->configure_for(held_elements_, space_->with_ghosts(u), here);
   const OwnedField held = forces_of(held_elements_, old, u, linear ? at_ : here, step);
   const std::size_t tools = settings_.boundary.displacements.size();

@@ -110,6 +110,8 @@ refuses("override of no cavity", 64, ["-cavity_hale_law", "hole"], {"-cavity_hal
 # Models and solvers.
 refuses("frozen in turning tissue", 64, ["-cavity_model", "linear"],
         {"-tissue_model": "corotational", "-cavity_model": "frozen"})
+refuses("linear beside turning tissue", 64, ["-cavity_model", "round its wall", "-tissue_gel_model linear"],
+        {"-tissue_model": "linear", "-tissue_gel_model": "neo_hookean", "-cavity_model": "linear"})
 refuses("linear in turning tissue", 64, ["-cavity_model"],
         {"-tissue_model": "corotational", "-cavity_model": "linear"})
 for model, solver in (("linear", "exact"), ("linear", "proportional"), ("follower", "exact"),

@@ -2,12 +2,13 @@
 
 Along the axis of a block whose sides are held the force has a closed form: antiplane shear between
 a shaft of radius r and a square, F = 2 pi mu L u / ln(R/r), R = 0.53935 sides being the square's
-inner radius. Across it there is none; three meshes must agree.
+inner radius. Across it there is none; the meshes must agree: two, with --long three.
 """
 import functools
 import math
 import os
 import subprocess
+import sys
 
 import h5py
 
@@ -55,6 +56,7 @@ def force(mesh, element, across, corrected):
 
 for element, sizes in (("p1", (0.0028, 0.002, 0.0016)), ("p1_anp", (0.0028, 0.002, 0.0016)),
                        ("p2", (0.005, 0.0035, 0.0025))):
+    sizes = sizes if "--long" in sys.argv else sizes[:2]
     bare = force(block(sizes[0]), element, False, False) / CLOSED_FORM
     check(bare > 1.3, "a bare line is too stiff")
     axial = [force(block(h), element, False, True) / CLOSED_FORM for h in sizes]

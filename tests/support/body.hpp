@@ -13,7 +13,8 @@ struct Body
   explicit Body(const BlockShape& shape, tissue::TissueSettings settings = {})
       : comm(MPI_COMM_WORLD),
         mesh(block(shape)),
-        space(mesh, mesh::partition_nodes(mesh, comm), comm, tissue::overlap_layers(settings.dilatation)),
+        space(mesh, mesh::partition_nodes(mesh, comm), comm,
+              tissue::overlap_layers(settings.dilatation)),
         tissue(mesh, space, with_material(std::move(settings)), ledger)
   {
   }

@@ -287,7 +287,7 @@ TEST_F(ScenarioTest, ReadsNeedlesWithTheirOverrides)
   EXPECT_EQ(scenario.needles[1].model, needle::Model::rigid);
   EXPECT_EQ(scenario.needles[1].motion.entry, Vec3(0, 0.031, 0.023));
   EXPECT_EQ(scenario.needles[0].motion.direction, Vec3::UnitX());  // made unit
-  EXPECT_FALSE(scenario.tissue.ordered_last.empty());                    // what the paths go through
+  EXPECT_FALSE(scenario.tissue.ordered_last.empty());              // what the paths go through
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ TEST(BoxQp, SetNewtonGivesUpInsteadOfCycling)
     SchurComplement condensed(problem);
     const VecX& F = condensed.bounds().F;
     const VecX wrong = condensed.s().cwiseSign().cwiseProduct(F);
-    const BoxSolution answer = primal_dual_active_set(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
+    const BoxSolution answer =
+        primal_dual_active_set(condensed.S(), condensed.s(), F, wrong, 1e-9, 6);
     EXPECT_LE(answer.factorisations, 6);
     if (answer.finished)
       EXPECT_LT(box_residual(condensed.S(), condensed.s(), condensed.bounds(), answer.x), 1e-9);

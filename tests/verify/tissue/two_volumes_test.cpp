@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "support/scene.hpp"
 
 namespace trocar {
@@ -30,6 +33,17 @@ std::vector<double> at(const step::Scene& scenario, const fem::GlobalField& u, d
   return found;
 }
 
+/// Two volumes, one behind the other.
+void halve(mesh::Mesh& mesh)
+{
+  mesh.volumes = {"first", "second"};
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    double x = 0.0;
+    for (const Vec3& corner : mesh::corners(mesh, t)) x += 0.25 * corner.x();
+    mesh.region[static_cast<std::size_t>(t)] = x > 0.02 ? 1 : 0;
+  }
+}
+
 // Two halves of unlike compressibility in a row, pressed together: each takes its own part of the
 // way, 1/(λ + 2μ), and the dilatation jumps between them. Elements that share their dilatation do
 // so within a volume only.
@@ -37,13 +51,7 @@ TEST(TwoVolumes, KeepADilatationEach)
 {
   for (bool quadratic : {false, true}) {
     step::Scene scenario = confined_bar(quadratic);
-    mesh::Mesh& mesh = scenario.mesh;
-    mesh.volumes = {"soft", "stiff"};
-    for (int t = 0; t < mesh.tet_count(); ++t) {
-      double x = 0.0;
-      for (const Vec3& corner : mesh::corners(mesh, t)) x += 0.25 * corner.x();
-      mesh.region[static_cast<std::size_t>(t)] = x > 0.02 ? 1 : 0;
-    }
+    halve(scenario.mesh);
     const tissue::Material soft{5000.0, 0.3, 1000.0, 0.0, 0.0};
     const tissue::Material stiff{5000.0, 0.49, 1000.0, 0.0, 0.0};
     scenario.tissue.materials = {soft, stiff};
@@ -60,6 +68,100 @@ TEST(TwoVolumes, KeepADilatationEach)
     const double force = 1e-4 / 0.02 / (of_soft + of_stiff) * 0.02 * 0.02;
     EXPECT_NEAR(start->report.holders.tools[0].x(), -force, 1e-9 * force);
   }
+}
+
+constexpr tissue::Model models[] = {tissue::Model::linear, tissue::Model::corotational,
+                                    tissue::Model::neo_hookean};
+
+/// First Piola stress of a confined bar that is stretched by 1 + e [Pa], by hand.
+double stress(tissue::Model model, const tissue::Material& m, double e)
+{
+  const double F = 1.0 + e;
+  if (model != tissue::Model::neo_hookean) return (m.lambda() + 2.0 * m.mu()) * e;
+  return m.mu() * (F - 1.0 / F) + m.lambda() * (F - 1.0);
+}
+
+/// What of the shortening `both` of two halves the first takes, where both bear the same:
+/// bisection.
+double share(const std::array<tissue::Model, 2>& model, const std::vector<tissue::Material>& m,
+             double both)
+{
+  double low = -0.9, high = 0.9;
+  for (int k = 0; k < 200; ++k) {
+    const double e = 0.5 * (low + high);
+    (stress(model[0], m[0], e) > stress(model[1], m[1], both - e) ? high : low) = e;
+  }
+  return 0.5 * (low + high);
+}
+
+// Every pair of laws, a fifth shorter: the halves bear the same and share the way by their laws.
+TEST(TwoModels, BearTheSameStress)
+{
+  for (bool quadratic : {false, true})
+    for (tissue::Model first : models)
+      for (tissue::Model second : models) {
+        step::Scene scenario = confined_bar(quadratic);
+        halve(scenario.mesh);
+        std::vector<tissue::Material> m{{5000.0, 0.3, 1000.0, 0.0, 0.0},
+                                        {8000.0, 0.2, 1000.0, 0.0, 0.0}};
+        m[0].model = first;
+        m[1].model = second;
+        scenario.tissue.materials = m;
+        scenario.tissue.newton_tolerance = 1e-12;
+        scenario.tissue.boundary.displacements = {{"x1", Vec3(-8e-3, 0.0, 0.0), std::nullopt}};
+        step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+        const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+        ASSERT_TRUE(start) << start.why();
+        const fem::GlobalField u = simulation.space.gather(start->state.tissue.u);
+        const double e = share({first, second}, m, -0.4);
+        for (double between : at(scenario, u, 0.02)) EXPECT_NEAR(between, 0.02 * e, 1e-10);
+        const double force = stress(first, m[0], e) * 0.02 * 0.02;
+        EXPECT_NEAR(start->report.holders.tools[0].x(), force, 1e-8 * std::abs(force));
+      }
+}
+
+/// A bar whose first half is stiff and whose second half hangs down from it by its weight, far
+/// beyond small strains.
+step::Scene hanging(tissue::Model stiff)
+{
+  test::BlockShape shape{8, 2, 2, Vec3(0.04, 0.01, 0.01), 0.0};
+  step::Scene scenario = test::needle_scenario(shape);
+  halve(scenario.mesh);
+  scenario.needles.clear();
+  scenario.time.is_static = true;
+  tissue::TissueSettings& tissue = scenario.tissue;
+  tissue.boundary.fixed = {{"x0", 7}};
+  tissue.boundary.gravity = Vec3(0.0, 0.0, -9.81);
+  tissue.materials = {{1e8, 0.3, 1000.0, 0.0, 0.0}, {3000.0, 0.3, 1000.0, 0.0, 0.0}};
+  tissue.materials[0].model = stiff;
+  tissue.materials[1].model = tissue::Model::corotational;
+  tissue.newton_tolerance = 1e-10;
+  return scenario;
+}
+
+fem::GlobalField shape_of(const step::Scene& scenario)
+{
+  step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+  const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+  EXPECT_TRUE(start) << start.why();
+  return simulation.space.gather(start->state.tissue.u);
+}
+
+// Where the linear half hardly moves it may as well be corotational; what turns beside it turns as
+// ever, with the exact tangent, with held rotations, and with a factor that lags.
+TEST(TwoModels, TurnBesideLinearTissue)
+{
+  const fem::GlobalField u = shape_of(hanging(tissue::Model::corotational));
+  const double lowest = u.value.minCoeff();
+  EXPECT_LT(lowest, -0.005);  // a quarter of its length
+  for (auto tangent : {tissue::Tangent::exact, tissue::Tangent::rotated})
+    for (double lag : {0.0, 1e-8}) {
+      step::Scene scenario = hanging(tissue::Model::linear);
+      scenario.tissue.tangent = tangent;
+      scenario.tissue.lag_tolerance = lag;
+      const fem::GlobalField beside = shape_of(scenario);
+      EXPECT_LT((beside.value - u.value).cwiseAbs().maxCoeff(), 1e-4 * std::abs(lowest));
+    }
 }
 
 // A traction that grows in time: at the end of every static step the bar is where the load of that
