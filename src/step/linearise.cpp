@@ -38,11 +38,9 @@ core::Outcome<core::Done> Newton::linearise()
     return refusal;
   }
   ++report_.linearisations;
-  inverted_ = tissue.folded(next_.tissue.u);
-  if (model_->scene.tissue.allow_inversion && next_.tissue.u.value.allFinite()) {
-    report_.folded = inverted_;
-    inverted_ = -1;
-  }
+  const tissue::Folded folded = tissue.folded(next_.tissue.u);
+  inverted_ = refused(folded);
+  if (model_->scene.tissue.allow_inversion) report_.folded = folded.linear;
   for (const needle::NeedleState& needle : next_.needles)
     if (!needle.finite()) return core::Refusal{"a needle's shape is not finite"};
   return core::Done{};

@@ -107,6 +107,13 @@ core::Outcome<core::Done> Newton::lead_on()
   return core::Done{};
 }
 
+/// The tet whose inversion ends the iteration; -1: none.
+int Newton::refused(const tissue::Folded& folded) const
+{
+  if (folded.linear < 0 || model_->scene.tissue.allow_inversion) return folded.other;
+  return folded.other < 0 ? folded.linear : std::min(folded.linear, folded.other);
+}
+
 // Half of the increment, a quarter, ...: the first on which no element is inside out and less is
 // unbalanced than before it. Forces of needles and cavities come in along the line, so that the
 // residual falls at first wherever the tangent is that of the forces; rows that begin to hold or
@@ -124,7 +131,7 @@ bool Newton::shorten(double& rest)
   for (int halving = 0; halving < most_halvings; ++halving) {
     part *= 0.5;
     const fem::OwnedField u{u_before_.value + part * (whole.value - u_before_.value)};
-    if (model_->tissue.folded(u) >= 0) continue;
+    if (refused(model_->tissue.folded(u)) >= 0) continue;
     const bool first = !std::isfinite(unbalanced_before_);  // nothing to compare with
     fem::OwnedField along = all;
     if (!first) along.value = forces_before_.value + part * (all.value - forces_before_.value);

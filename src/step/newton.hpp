@@ -55,6 +55,7 @@ class Newton
   void correct(Solution& solution);
   void measure();
   double largest_increment() const;
+  int refused(const tissue::Folded& folded) const;
   bool shorten(double& rest);
 
   Model* model_;

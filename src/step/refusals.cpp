@@ -27,15 +27,18 @@ std::string inverted_at(const Scene& scene, int tet)
   const auto at = static_cast<std::size_t>(tet);
   const tissue::Model model = scene.tissue.model_of(static_cast<std::size_t>(mesh.region[at]));
   const bool is_linear = model == tissue::Model::linear;
+  const bool own = model != scene.tissue.model;  // the volume's own option decides
+  const std::string volume = mesh.volumes[static_cast<std::size_t>(mesh.region[at])];
+  const std::string option = "-tissue_" + (own ? volume + "_" : std::string()) + "model";
   std::ostringstream text;
   text << "an element of the tissue would turn inside out: tet " << mesh.elem_tag[at]
        << " of volume '" << mesh.volumes[static_cast<std::size_t>(mesh.region[at])] << "' near "
        << at_place(middle)
-       << (is_linear ? "; linear tissue is for small strains (take -tissue_model corotational, or "
+       << (is_linear ? "; linear tissue is for small strains (take " + option + " corotational, or "
                        "accept it with -tissue_allow_inversion)"
                      : "; shorter steps or a finer mesh there may help");
   if (model == tissue::Model::corotational)
-    text << ", or -tissue_model neo_hookean, which resists being crushed";
+    text << ", or " << option << " neo_hookean, which resists being crushed";
   return text.str();
 }
 

@@ -125,15 +125,18 @@ void ElementsOf<N>::gather_gradients(const GhostedField& u, const PointOf& point
 }
 
 template <int N>
-int ElementsOf<N>::folded(const GhostedField& u) const
+Folded ElementsOf<N>::folded(const GhostedField& u) const
 {
+  Folded found;
   for (std::size_t e = 0; e < tets(); ++e) {
+    int& first = model(e) == Model::linear ? found.linear : found.other;
+    if (first >= 0) continue;
     const Nodal w = nodal(u, e);
-    for (std::size_t q = 0; q < points; ++q)
+    for (std::size_t q = 0; q < points && first < 0; ++q)
       if (!((Mat3::Identity() + gradient(w, points * e + q)).determinant() > 0.0))
-        return space_->file_tet(e);
+        first = space_->file_tet(e);
   }
-  return -1;
+  return found;
 }
 
 /// Rotations of `count` points, the k-th being point_of(k); identities from where a tet is turned

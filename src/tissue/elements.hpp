@@ -99,6 +99,13 @@ struct TetWork
   double damping_power_mass = 0.0, damping_power_stiffness = 0.0;  ///< [W]
 };
 
+/// Tets that are turned inside out, in file numbering: the first of linear tissue, which feels nothing
+/// of it, and the first of other tissue; -1: none.
+struct Folded
+{
+  int linear = -1, other = -1;
+};
+
 /// The sums over the tets of a rank: forces, operator, energies, stress. Linear or quadratic tets,
 /// any model. Borrows mesh and space. Nothing here is collective.
 class Elements
@@ -111,8 +118,8 @@ class Elements
   /// Nodes that a shared dilatation couples, beyond those of the tets.
   virtual const fem::Cliques& cliques() const = 0;
 
-  /// The first tet that is turned inside out at u, in file numbering; -1: none.
-  virtual int folded(const GhostedField& u) const = 0;
+  /// The first tets that are turned inside out at u.
+  virtual Folded folded(const GhostedField& u) const = 0;
   /// Rotations, and for exact tangents the rest, at u. False when a tet is turned inside out.
   virtual bool configure(const GhostedField& u, LinearisationPoint& at) const = 0;
   /// Pressures [Pa] to which the linearisation `last` leads with the further displacement d: what

@@ -21,7 +21,7 @@ class ElementsOf final : public Elements
   ElementsOf(const mesh::Mesh& mesh, const fem::Space& space, const ElementSettings& settings);
 
   const fem::Cliques& cliques() const override { return cliques_; }
-  int folded(const GhostedField& u) const override;
+  Folded folded(const GhostedField& u) const override;
   bool configure(const GhostedField& u, LinearisationPoint& at) const override;
   core::VecX linearised_pressures(const LinearisationPoint& last,
                                   const GhostedField& d) const override;

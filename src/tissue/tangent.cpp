@@ -102,13 +102,17 @@ bool Tissue::factor_worn() const
   return current_->factor.worn();
 }
 
-int Tissue::folded(const OwnedField& u) const
+Folded Tissue::folded(const OwnedField& u) const
 {
   const int none = mesh_->tet_count();
-  int mine = elements_->folded(space_->with_ghosts(u));
-  if (mine < 0) mine = u.value.allFinite() ? none : 0;
-  const auto first = static_cast<int>(-space_->comm().max(-static_cast<double>(mine)));
-  return first == none ? -1 : first;
+  Folded mine = elements_->folded(space_->with_ghosts(u));
+  if (!u.value.allFinite()) mine.other = 0;
+  const auto first = [&](int tet) {
+    const double found = tet < 0 ? none : tet;
+    const auto of_all = static_cast<int>(-space_->comm().max(-found));
+    return of_all == none ? -1 : of_all;
+  };
+  return {first(mine.linear), first(mine.other)};
 }
 
 }  // namespace trocar::tissue

@@ -115,9 +115,9 @@ class Tissue
                                                 const TimeStep& step, const fem::Load& more = {},
                                                 bool goes_on = false);
 
-  /// The first tet that u, or a part of it that is not finite, turns inside out, in file numbering;
-  /// -1: none. Collective; equal on every rank.
-  int folded(const OwnedField& u) const;
+  /// The first tets that u turns inside out; what is not finite is no linear tissue's matter.
+  /// Collective; equal on every rank.
+  Folded folded(const OwnedField& u) const;
 
   TangentChoice& tangent() { return tangent_; }
 

@@ -164,6 +164,34 @@ TEST(TwoModels, TurnBesideLinearTissue)
     }
 }
 
+// What linear tissue may do with -tissue_allow_inversion other tissue beside it may not.
+TEST(TwoModels, OnlyLinearTissueMayBeTurnedInsideOut)
+{
+  for (auto first : {tissue::Model::linear, tissue::Model::corotational})
+    for (bool allowed : {true, false}) {
+      step::Scene scenario = confined_bar(false);
+      halve(scenario.mesh);
+      scenario.tissue.materials = {{1000.0, 0.3, 1000.0, 0.0, 0.0}, {1e6, 0.3, 1000.0, 0.0, 0.0}};
+      scenario.tissue.model = tissue::Model::corotational;
+      scenario.tissue.materials[0].model = first;
+      scenario.tissue.materials[1].model =
+          first == tissue::Model::linear ? tissue::Model::corotational : tissue::Model::linear;
+      scenario.tissue.allow_inversion = allowed;
+      // More than the soft half is long.
+      scenario.tissue.boundary.displacements = {{"x1", Vec3(-0.025, 0.0, 0.0), std::nullopt}};
+      step::Model simulation(scenario, base::Comm(MPI_COMM_WORLD));
+      const step::Outcome<step::Accepted> start = step::initial_state(simulation);
+      EXPECT_EQ(static_cast<bool>(start), allowed && first == tissue::Model::linear);
+      if (start) {
+        ASSERT_GE(start->report.folded, 0);
+        EXPECT_EQ(scenario.mesh.region[static_cast<std::size_t>(start->report.folded)], 0);
+      } else {
+        EXPECT_NE(start.why().find("inside out"), std::string::npos) << start.why();
+        EXPECT_NE(start.why().find("'first'"), std::string::npos) << start.why();
+      }
+    }
+}
+
 // A traction that grows in time: at the end of every static step the bar is where the load of that
 // moment has it.
 TEST(Traction, IsThatOfTheEndOfTheStep)
