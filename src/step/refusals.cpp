@@ -34,8 +34,9 @@ std::string inverted_at(const Scene& scene, int tet)
   text << "an element of the tissue would turn inside out: tet " << mesh.elem_tag[at]
        << " of volume '" << mesh.volumes[static_cast<std::size_t>(mesh.region[at])] << "' near "
        << at_place(middle)
-       << (is_linear ? "; linear tissue is for small strains (take " + option + " corotational, or "
-                       "accept it with -tissue_allow_inversion)"
+       << (is_linear ? "; linear tissue is for small strains (take " + option +
+                           " corotational, or "
+                           "accept it with -tissue_allow_inversion)"
                      : "; shorter steps or a finer mesh there may help");
   if (model == tissue::Model::corotational)
     text << ", or " << option << " neo_hookean, which resists being crushed";

@@ -99,8 +99,8 @@ struct TetWork
   double damping_power_mass = 0.0, damping_power_stiffness = 0.0;  ///< [W]
 };
 
-/// Tets that are turned inside out, in file numbering: the first of linear tissue, which feels nothing
-/// of it, and the first of other tissue; -1: none.
+/// Tets that are turned inside out, in file numbering: the first of linear tissue, which feels
+/// nothing of it, and the first of other tissue; -1: none.
 struct Folded
 {
   int linear = -1, other = -1;
