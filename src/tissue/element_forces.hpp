@@ -291,13 +291,4 @@ StressField ElementsOf<N>::stresses(const LinearisationPoint& at, const GhostedF
   return sums;
 }
 
-template <int N>
-void ElementsOf<N>::add_weight(const core::Vec3& gravity, OwnedField& force) const
-{
-  for (std::size_t e = 0; e < tets(); ++e) {
-    const Eigen::Matrix<double, 1, N> share = mass_factor(e) * mass_form(e).colwise().sum();
-    scatter(material(e).density * gravity * share, e, force);
-  }
-}
-
 }  // namespace trocar::tissue

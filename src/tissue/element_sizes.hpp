@@ -2,8 +2,8 @@
 
 #include "tissue/elements_of.hpp"
 
-// What forces of the tets are judged by: definitions for linear_tets.cpp and quadratic_tets.cpp
-// alone.
+// Inertia and weight of the tets, and what their forces are judged by: definitions for
+// linear_tets.cpp and quadratic_tets.cpp alone.
 namespace trocar::tissue {
 
 /// What a tet adds to the sizes that forces are judged by. Rounded are the displacement gradient,
@@ -45,6 +45,15 @@ void ElementsOf<N>::add_inertia(const Kinematics& motion, OwnedField& inertia) c
     const Material& m = material(e);
     const Nodal w = nodal(motion.a, e) + m.rayleigh_mass * nodal(motion.v, e);
     scatter(m.density * mass_factor(e) * w * mass_form(e), e, inertia);
+  }
+}
+
+template <int N>
+void ElementsOf<N>::add_weight(const core::Vec3& gravity, OwnedField& force) const
+{
+  for (std::size_t e = 0; e < tets(); ++e) {
+    const Eigen::Matrix<double, 1, N> share = mass_factor(e) * mass_form(e).colwise().sum();
+    scatter(material(e).density * gravity * share, e, force);
   }
 }
 
