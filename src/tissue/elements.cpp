@@ -21,7 +21,8 @@ bool ElementSettings::any(Model one) const
 
 bool LinearisationPoint::operator==(const LinearisationPoint& other) const
 {
-  return R == other.R && G == other.G && p == other.p;
+  // Vectors of unlike length may not be compared.
+  return R == other.R && G == other.G && p.size() == other.p.size() && p == other.p;
 }
 
 }  // namespace trocar::tissue
