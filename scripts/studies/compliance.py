@@ -96,7 +96,7 @@ def main():
                                       for others in (0, 1, 2)])
     figure, axis = plt.subplots(figsize=(6, 4.2), constrained_layout=True)
     dofs = [row["dofs"] for row in rows]
-    for key, label in (("columns_speedup", "all columns at once"), ("pinned_speedup", "pinned tube"),
+    for key, label in (("columns_speedup", "all columns at once"), ("pinned_speedup", "corridor ordered last"),
                        ("twelve_speedup", "12 new columns")):
         axis.loglog(dofs, [float(row[key]) for row in rows], "o-", label=label)
     axis.set(xlabel="dofs", ylabel="times faster than one MUMPS solve per column",

@@ -16,7 +16,7 @@ from common import ROOT, run, write_table
 
 WAYS = {"reuse": {"compliance_reuse": "exact", "compliance_tube": 0},
         "standard": {"compliance_reuse": "none", "compliance_tube": 0},
-        "reuse, pinned tube": {"compliance_reuse": "exact", "compliance_tube": 1}}
+        "reuse, corridor last": {"compliance_reuse": "exact", "compliance_tube": 1}}
 
 
 def smooth(values, width=50):

@@ -181,7 +181,7 @@ bool closed(const Cavities& cavities, const State& state, const Shape& shape, co
   return true;
 }
 
-std::vector<CavityReport> accept(const Cavities& cavities, const End& end, State& state)
+std::vector<CavityReport> accept(const Cavities& cavities, const Configuration& end, State& state)
 {
   const TimeStep& now = end.now;
   const VecX V = cavities.volumes(end.shape);

@@ -35,15 +35,16 @@ State advance(const Cavities& cavities, const State& old, const Between& step, c
 /// True when every exact volume is that of its fluid, to its tolerance.
 bool closed(const Cavities& cavities, const State& state, const Shape& shape, const TimeStep& now);
 
-/// Where a step ends.
-struct End
+/// The tissue and its walls at a time.
+struct Configuration
 {
-  const OwnedField& u;
-  const Shape& shape;
+  const OwnedField& u;  ///< displacement [m]
+  const Shape& shape;   ///< of the walls at u
   const TimeStep& now;
 };
-/// Ends a step: flows are booked, and what is to be known of it. Collective.
-std::vector<CavityReport> accept(const Cavities& cavities, const End& end, State& state);
+/// Ends a step there: books flows and amounts in the state, and reports on every cavity.
+/// Collective.
+std::vector<CavityReport> accept(const Cavities& cavities, const Configuration& end, State& state);
 
 /// V_0 + g_0·u of a linear cavity [m³]. Collective.
 double linear_volume(const Cavities& cavities, int i, const OwnedField& u);

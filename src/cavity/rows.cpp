@@ -30,7 +30,8 @@ void set_gaps(const Cavities& cavities, const CavityRows& rows, constraint::Set&
 
 }  // namespace
 
-CavityRows add_rows(Cavities& cavities, const State& state, const End& at, constraint::Set& set)
+CavityRows add_rows(Cavities& cavities, const State& state, const Configuration& at,
+                    constraint::Set& set)
 {
   CavityRows rows;
   rows.first = set.size();

@@ -22,7 +22,8 @@ struct CavityRows
 };
 
 /// Rows of linear and follower cavities at the end of the last iterate. Collective.
-CavityRows add_rows(Cavities& cavities, const State& state, const End& at, constraint::Set& set);
+CavityRows add_rows(Cavities& cavities, const State& state, const Configuration& at,
+                    constraint::Set& set);
 
 /// Linearises the fluids anew where the multipliers have led; false when they were right.
 bool refresh(const Cavities& cavities, const VecX& lambda, CavityRows& rows, constraint::Set& set);

@@ -52,7 +52,8 @@ struct BodyTerm
   double coefficient;
 };
 
-/// A functional of many dofs of the tissue: coefficient · (g·u), g the set's wide probe.
+/// A functional of many dofs of the tissue: coefficient · (g·u), g the set's
+/// functional of that index.
 struct DistributedTerm
 {
   int probe;
@@ -94,10 +95,10 @@ class Set
   const std::vector<law::Block>& blocks() const { return blocks_; }
   core::VecX starts() const;  ///< multipliers to start from (rows) [N]
 
-  /// Adds a wide probe and gives its index, for `DistributedTerm::probe`.
+  /// Adds a functional and gives its index, for `DistributedTerm::probe`.
   int add_functional(std::shared_ptr<const solve::DistributedFunctional> probe);
-  /// What the rows probe: file nodes with a non-zero weight, ascending, and the wide probes, which
-  /// live as long as the set.
+  /// What the rows probe: file nodes with a non-zero weight, ascending, and the functionals,
+  /// which live as long as the set.
   solve::Probes probes() const;
 
   /// Rows that give way to each other's multipliers: δ_i grows by `compliance` · λ_j and δ_j

@@ -147,8 +147,8 @@ int add_lateral_rows(const Hold& hold, double compliance, const Vec3& start, int
   return first;
 }
 
-/// Dashpot (compliance, 0: none) and dry friction on one axial row each; `compliance`: of the
-/// tissue next to the shaft.
+/// Dry friction and a dashpot, h/b its compliance (0: none), on one axial row each; `compliance` is
+/// that of the tissue next to the shaft [m/N], of which both laws' rows have a share.
 void add_friction_rows(double dashpot, constraint::Row row, double compliance, PointRows& mine,
                        constraint::Set& set)
 {

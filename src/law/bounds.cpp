@@ -21,12 +21,18 @@ VecX Bounds::clip(const VecX& x) const
   return within;
 }
 
+VecX Bounds::mean_diagonal(const MatX& S) const
+{
+  VecX w = S.diagonal().cwiseMax(1e-300);
+  for (int i : pairs) w.segment<2>(i).setConstant(w.segment<2>(i).mean());
+  return w;
+}
+
 double box_residual(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& x)
 {
   const VecX gradient = S * x + s;
   if (!gradient.allFinite()) return std::nan("");
-  VecX w = S.diagonal().cwiseMax(1e-300);
-  for (int i : bounds.pairs) w.segment<2>(i).setConstant(w.segment<2>(i).mean());
+  const VecX w = bounds.mean_diagonal(S);
   const VecX natural = w.cwiseProduct(x - bounds.clip(x - gradient.cwiseQuotient(w)));
   double worst = natural.size() > 0 ? natural.cwiseAbs().maxCoeff() : 0.0;
   for (int i : bounds.pairs) worst = std::max(worst, natural.segment<2>(i).norm());

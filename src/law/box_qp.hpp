@@ -15,6 +15,8 @@ struct Bounds
 
   bool of_pair(int row) const;  ///< the first or second of one
   VecX clip(const VecX& x) const;
+  /// S_ii of every row, of a pair the mean of its two [m/N], > 0.
+  VecX mean_diagonal(const MatX& S) const;
 };
 
 /// Answer to  min ½ xᵀSx + sᵀx  within bounds.
@@ -56,7 +58,7 @@ BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& 
 BoxSolution interior_point(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& start,
                            double tolerance, int max_iterations);
 
-/// Largest w |x - clip(x - (S x + s) / w)| of rows and pairs, w the mean of their S_ii [m].
+/// Largest w |x - clip(x - (S x + s) / w)| of rows and pairs, w their mean diagonal [m].
 double box_residual(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& x);
 
 }  // namespace trocar::law

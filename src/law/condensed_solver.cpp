@@ -23,51 +23,50 @@ VecX take(const BoxSolution& answer, Multipliers& result)
   return answer.x;
 }
 
-VecX interior(SchurComplement& condensed, const Settings& settings, Multipliers& result)
+VecX interior(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
-  return take(interior_point(condensed.S(), condensed.s(), condensed.bounds(), condensed.start(),
+  return take(interior_point(schur.S(), schur.s(), schur.bounds(), schur.start(),
                              box_tolerance * settings.tolerance,
                              std::min(settings.max_iterations, most_interior_steps)),
               result);
 }
 
-VecX active_set_search(SchurComplement& condensed, const VecX& start, const Settings& settings,
+VecX active_set_search(SchurComplement& schur, const VecX& start, const Settings& settings,
                        Multipliers& result)
 {
-  return take(active_set(condensed.S(), condensed.s(), condensed.bounds().F, start,
-                         settings.max_iterations),
+  return take(active_set(schur.S(), schur.s(), schur.bounds().F, start, settings.max_iterations),
               result);
 }
 
 /// With discs: Newton, where it gets there and is not to be left out; else the interior point, and
 /// Newton from there.
-VecX discs(SchurComplement& condensed, const Settings& settings, Multipliers& result)
+VecX discs(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
-  const MatX& S = condensed.S();
+  const MatX& S = schur.S();
   const auto newton = [&](const VecX& start) {
-    return pair_newton(S, condensed.s(), condensed.bounds(), start, settings.tolerance,
+    return pair_newton(S, schur.s(), schur.bounds(), start, settings.tolerance,
                        std::min(settings.max_iterations, most_newton_steps));
   };
   if (settings.method != Method::interior_point) {
-    const BoxSolution warm = newton(condensed.start());
+    const BoxSolution warm = newton(schur.start());
     const VecX x = take(warm, result);
     if (warm.finished) return x;
   }
-  return take(newton(interior(condensed, settings, result)), result);
+  return take(newton(interior(schur, settings, result)), result);
 }
 
 /// All slipping as they did, which needs no S; or last step's sets, when they lead on; or the
 /// interior point, whose cost hardly depends on how many rows change.
-VecX automatic(SchurComplement& condensed, const Settings& settings, Multipliers& result)
+VecX automatic(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
-  if (const std::optional<VecX> slipping = condensed.all_slipping()) return *slipping;
-  const MatX& S = condensed.S();
-  const VecX& s = condensed.s();
-  const BoxSolution warm = primal_dual_active_set(S, s, condensed.bounds().F, condensed.start(),
+  if (const std::optional<VecX> slipping = schur.all_slipping()) return *slipping;
+  const MatX& S = schur.S();
+  const VecX& s = schur.s();
+  const BoxSolution warm = primal_dual_active_set(S, s, schur.bounds().F, schur.start(),
                                                   settings.tolerance, most_warm_sets);
   VecX x = take(warm, result);
-  if (!warm.finished || !(box_residual(S, s, condensed.bounds(), x) <= settings.tolerance))
-    x = interior(condensed, settings, result);
+  if (!warm.finished || !(box_residual(S, s, schur.bounds(), x) <= settings.tolerance))
+    x = interior(schur, settings, result);
   return x;
 }
 
@@ -97,25 +96,25 @@ void sweep_on(const Problem& problem, const Settings& settings, Multipliers& res
   if (swept.residual < result.residual) check_kkt(problem, settings, swept.lambda, result);
 }
 
-void solve_boxes(const Problem& problem, const Settings& settings, SchurComplement& condensed,
+void solve_boxes(const Problem& problem, const Settings& settings, SchurComplement& schur,
                  Multipliers& result)
 {
-  const bool with_discs = !condensed.bounds().pairs.empty();
+  const bool with_discs = !schur.bounds().pairs.empty();
   VecX lambda_f;
   if (with_discs)
-    lambda_f = discs(condensed, settings, result);
+    lambda_f = discs(schur, settings, result);
   else if (settings.method == Method::interior_point)
-    lambda_f = interior(condensed, settings, result);
+    lambda_f = interior(schur, settings, result);
   else if (settings.method == Method::active_set)
-    lambda_f = active_set_search(condensed, condensed.start(), settings, result);
+    lambda_f = active_set_search(schur, schur.start(), settings, result);
   else
-    lambda_f = automatic(condensed, settings, result);
-  check_kkt(problem, settings, condensed.expand(lambda_f), result);
+    lambda_f = automatic(schur, settings, result);
+  check_kkt(problem, settings, schur.expand(lambda_f), result);
   if (result.converged || settings.method != Method::automatic) return;
   if (bilateral_residual(problem, result.lambda) > settings.tolerance) return;
   if (with_discs) return sweep_on(problem, settings, result);
-  lambda_f = active_set_search(condensed, lambda_f, settings, result);
-  check_kkt(problem, settings, condensed.expand(lambda_f), result);
+  lambda_f = active_set_search(schur, lambda_f, settings, result);
+  check_kkt(problem, settings, schur.expand(lambda_f), result);
 }
 
 std::string complaint(const Problem& problem, const Settings& settings, const Multipliers& result)
@@ -135,18 +134,18 @@ Multipliers solve_condensed(const Problem& problem, const Settings& settings)
 {
   Multipliers result;
   core::Stopwatch watch;
-  SchurComplement condensed(problem);
+  SchurComplement schur(problem);
   result.factor_seconds = watch.seconds();
   watch = {};
-  if (condensed.box_rows() == 0)
-    check_kkt(problem, settings, condensed.expand(VecX()), result);
+  if (schur.box_rows() == 0)
+    check_kkt(problem, settings, schur.expand(VecX()), result);
   else
-    solve_boxes(problem, settings, condensed, result);
+    solve_boxes(problem, settings, schur, result);
   result.seconds = watch.seconds();
-  const int box_rank = condensed.box_rank();
-  result.rank = condensed.bilateral_rank() + box_rank;
-  result.condition = condensed.bilateral_condition();
-  result.nonunique = condensed.bilateral_redundant() || box_rank < condensed.box_rows();
+  const int box_rank = schur.box_rank();
+  result.rank = schur.bilateral_rank() + box_rank;
+  result.condition = schur.bilateral_condition();
+  result.nonunique = schur.bilateral_redundant() || box_rank < schur.box_rows();
   if (!result.converged) result.why = complaint(problem, settings, result);
   return result;
 }

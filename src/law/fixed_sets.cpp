@@ -58,18 +58,39 @@ bool held_back(const Problem& problem, const Intervals& interval, const VecX& la
   return false;
 }
 
-/// Problem on some blocks, in multipliers counted from the middles of their sets.
-Problem restrict(const Problem& problem, const std::vector<const Block*>& blocks,
-                 const Intervals& interval)
+/// Some blocks of a problem, and their rows.
+struct Chosen
 {
+  std::vector<const Block*> blocks{};
+  std::vector<int> rows{};
+};
+
+/// Those that something can move and whose multipliers have a choice.
+Chosen choose(const Problem& problem, const VecX& w, const Intervals& interval)
+{
+  Chosen chosen;
+  for (const Block& block : problem.blocks) {
+    const bool moves = w.segment(block.first, block.law.rows()).maxCoeff() > 0.0;
+    const bool choice = block.law.set == Law::Set::zero || interval.half[block.first] > 0.0;
+    if (!moves || !choice) continue;
+    chosen.blocks.push_back(&block);
+    for (int row = block.first; row < block.end(); ++row) chosen.rows.push_back(row);
+  }
+  return chosen;
+}
+
+/// The problem on these, in multipliers counted from the middles of their sets.
+Problem restrict(const Problem& problem, const Chosen& chosen, const Intervals& interval)
+{
+  const std::vector<int>& rows = chosen.rows;
   Problem part;
-  std::vector<int> rows;
-  for (const Block* block : blocks) {
+  int first = 0;
+  for (const Block* block : chosen.blocks) {
     Law law = block->law;
     if (law.set == Law::Set::interval) law = Law::box(interval.half[block->first]);
     if (law.set == Law::Set::disc) law = Law::disc(interval.half[block->first]);
-    part.blocks.push_back({static_cast<int>(rows.size()), law, block->point});
-    for (int row = block->first; row < block->end(); ++row) rows.push_back(row);
+    part.blocks.push_back({first, law, block->point});
+    first += law.rows();
   }
   part.W = problem.W(rows, rows);
   // A compliant row is a hard one in series with its compliance.
@@ -83,22 +104,14 @@ Problem restrict(const Problem& problem, const std::vector<const Block*>& blocks
 Multipliers solve_within(const Problem& problem, const VecX& w, const Intervals& interval,
                          const Settings& settings)
 {
-  std::vector<const Block*> blocks;  // that something can move and whose multipliers have a choice
-  std::vector<int> rows;
-  for (const Block& block : problem.blocks) {
-    const bool moves = w.segment(block.first, block.law.rows()).maxCoeff() > 0.0;
-    const bool choice = block.law.set == Law::Set::zero || interval.half[block.first] > 0.0;
-    if (!moves || !choice) continue;
-    blocks.push_back(&block);
-    for (int row = block.first; row < block.end(); ++row) rows.push_back(row);
-  }
+  const Chosen chosen = choose(problem, w, interval);
   Multipliers result;
-  if (rows.empty()) {
+  if (chosen.rows.empty()) {
     result.converged = true;
     result.lambda = interval.middle;
     return result;
   }
-  const Problem part = restrict(problem, blocks, interval);
+  const Problem part = restrict(problem, chosen, interval);
   if (settings.method == Method::pgs)
     result = solve_pgs(part, settings);
   else if (settings.method == Method::hybrid)
@@ -106,7 +119,7 @@ Multipliers solve_within(const Problem& problem, const VecX& w, const Intervals&
   else
     result = solve_condensed(part, settings);
   VecX lambda = interval.middle;
-  lambda(rows) += result.lambda;
+  lambda(chosen.rows) += result.lambda;
   result.lambda = lambda;
   return result;
 }

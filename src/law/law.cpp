@@ -69,31 +69,6 @@ FewSquare drawn_derivative(const Few& x, double radius)
 
 }  // namespace
 
-Law Law::follower(int leader, double friction)
-{
-  Law law;
-  law.set = Set::follower;
-  law.leader = leader;
-  law.friction = friction;
-  return law;
-}
-
-Law Law::cone(double friction, double upper)
-{
-  Law law;
-  law.set = Set::cone;
-  law.friction = friction;
-  law.upper = upper;
-  return law;
-}
-
-Law Law::capped_cone(double friction, double shear)
-{
-  Law law = cone(friction);
-  law.shear = shear;
-  return law;
-}
-
 int Law::rows() const
 {
   if (set == Set::cone) return 3;

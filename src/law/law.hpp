@@ -37,12 +37,21 @@ struct Law
   static Law interval(double lower, double upper) { return {Set::interval, lower, upper}; }
   static Law box(double bound) { return interval(-bound, bound); }
   static Law half_line() { return interval(0.0, std::numeric_limits<double>::infinity()); }
-  static Law follower(int leader, double friction);
+  static Law follower(int leader, double friction)
+  {
+    return {.set = Set::follower, .friction = friction, .leader = leader};
+  }
   static Law disc(double radius) { return {Set::disc, 0.0, radius}; }
   /// Coulomb's cone, its normal force at most `upper`.
-  static Law cone(double friction, double upper = std::numeric_limits<double>::infinity());
+  static Law cone(double friction, double upper = std::numeric_limits<double>::infinity())
+  {
+    return {.set = Set::cone, .upper = upper, .friction = friction};
+  }
   /// Its intersection with a disc: the shear force is at most `shear` (Tresca).
-  static Law capped_cone(double friction, double shear);
+  static Law capped_cone(double friction, double shear)
+  {
+    return {.set = Set::cone, .friction = friction, .shear = shear};
+  }
 
   int rows() const;
   bool operator==(const Law&) const = default;

@@ -117,8 +117,7 @@ BoxSolution pair_newton(const MatX& S, const VecX& s, const Bounds& bounds, cons
   const double shift = 0.1 * tolerance / std::max(bounds.F.maxCoeff(), 1e-300);
   MatX H = S;
   H.diagonal().array() += shift;
-  VecX w = S.diagonal().cwiseMax(1e-300);
-  for (int i : bounds.pairs) w.segment<2>(i).setConstant(w.segment<2>(i).mean());
+  const VecX w = bounds.mean_diagonal(S);
   BoxSolution result{start, 0, false};
   VecX x = bounds.clip(start);
   std::vector<signed char> last;

@@ -17,7 +17,7 @@ struct Block
   int end() const { return first + law.rows(); }
 };
 
-/// The dense problem  δ = W λ + g, (δ, λ) in every block's law  (DESIGN eq., paper eq. 3).
+/// The dense problem  δ = W λ + g, (δ, λ) in every block's law  (needle paper, eq. 3).
 /// With sets of fixed size it is the optimality system of min ½ λᵀWλ + gᵀλ over them.
 struct Problem
 {

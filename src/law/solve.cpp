@@ -19,6 +19,7 @@ struct Followed
   std::size_t block;  ///< of the problem with fixed sets
   int leader;
   double friction, cap;
+  double give = 0.0;  ///< mobility of its rows [m/N]
 };
 
 /// The problem with fixed sets in the place of those that follow: a follower is a box, a cone an
@@ -41,6 +42,11 @@ Problem with_fixed_sets(const Problem& problem, std::vector<Followed>& followed)
       fixed.blocks.push_back(block);
     }
   }
+  const VecX w = mobility(fixed);
+  for (Followed& one : followed) {
+    const Block& block = fixed.blocks[one.block];
+    one.give = w.segment(block.first, block.law.rows()).maxCoeff();
+  }
   return fixed;
 }
 
@@ -50,15 +56,13 @@ Problem with_fixed_sets(const Problem& problem, std::vector<Followed>& followed)
 double follow(const std::vector<Followed>& followed, const VecX& lambda, double part,
               double unsettled, Problem& fixed)
 {
-  const VecX w = mobility(fixed);
   double change = 0.0;
   for (const Followed& one : followed) {
     Block& block = fixed.blocks[one.block];
     const double size = std::min(one.friction * std::max(lambda[one.leader], 0.0), one.cap);
     const double off = std::abs(size - block.law.upper);
-    const double give = w.segment(block.first, block.law.rows()).maxCoeff();
-    change = std::max(change, give * off);
-    if (give <= 0.0 && off > 1e-9 * size + 1e-12) change = std::max(change, unsettled);
+    change = std::max(change, one.give * off);
+    if (one.give <= 0.0 && off > 1e-9 * size + 1e-12) change = std::max(change, unsettled);
     const double next = block.law.upper + part * (size - block.law.upper);
     block.law = block.law.set == Law::Set::disc ? Law::disc(next) : Law::box(next);
   }

@@ -169,6 +169,7 @@ bool ElementsOf<N>::configure(const GhostedField& u, LinearisationPoint& at) con
   if (at.R.size() != count) at.R.assign(count, Mat3::Identity());
   if (settings_.all_linear()) return true;
   at.G.resize(exact() ? count : 0);
+  if (!exact()) at.p.resize(0);
   const bool all = !settings_.any(Model::linear);
   const auto point_of = [&](std::size_t k) { return all ? k : turning_[k]; };
   if (!rotate(u, point_of, all ? count : turning_.size(), at.R)) return false;

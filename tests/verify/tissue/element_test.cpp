@@ -89,6 +89,26 @@ TEST(Elements, MatrixAndElementLoopAreOneOperator)
     }
 }
 
+// A point that is configured again keeps nothing of the tangent it was last configured for: points
+// are compared to know whether an operator is at hand.
+TEST(Elements, PointOfTheRotatedTangentHasNothingOfTheExactOne)
+{
+  for (Kind kind : kinds) {
+    if (kind.model != Model::corotational) continue;
+    kind.tangent = Tangent::automatic;
+    test::Body body(shape_of(kind), settings_of(kind));
+    const auto u = body.space.with_ghosts(test::nodal(body, deformed));
+    tissue::LinearisationPoint rotated, exact;
+    ASSERT_TRUE(body.tissue.configure(u, rotated));
+    ASSERT_TRUE(body.tissue.tangent().take_exact());
+    ASSERT_TRUE(body.tissue.configure(u, exact));
+    EXPECT_FALSE(exact == rotated) << kind.name;
+    ASSERT_TRUE(body.tissue.tangent().drop_exact());
+    ASSERT_TRUE(body.tissue.configure(u, exact));
+    EXPECT_TRUE(exact == rotated) << kind.name;
+  }
+}
+
 // A linear displacement is in equilibrium on any mesh. With curved tets inside a body it is so to
 // the integration's error: four points do not integrate the cubic products of a curved tet.
 TEST(Elements, PassThePatchTest)
