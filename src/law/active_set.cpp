@@ -9,19 +9,19 @@
 namespace trocar::law {
 namespace {
 
-double energy(const MatX& S, const VecX& s, const VecX& x)
+double energy(const BoxQp& qp, const VecX& x)
 {
-  return x.dot(0.5 * (S * x) + s);
+  return x.dot(0.5 * (qp.S * x) + qp.s);
 }
 
 /// Minimiser over the free rows with the others held; the least-norm one when Cholesky meets a
 /// vanishing pivot.
-VecX minimise_free(const MatX& S, const VecX& s, const VecX& x, const std::vector<int>& free)
+VecX minimise_free(const BoxQp& qp, const VecX& x, const std::vector<int>& free)
 {
   VecX held = x;
   for (int i : free) held[i] = 0.0;
-  const VecX rhs = -(s + S * held)(free);
-  const MatX S_ff = S(free, free);
+  const VecX rhs = -qp.gradient(held)(free);
+  const MatX S_ff = qp.S(free, free);
   VecX y = x;
   const core::Cholesky cholesky(S_ff);
   if (cholesky.regular()) y(free) = cholesky.solve(rhs);
@@ -38,8 +38,9 @@ struct Search
 };
 
 /// Goes from x towards the free minimiser y, which leaves the box; false when it is not a number.
-bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, Search& search)
+bool stop_at_bounds(const BoxQp& qp, const VecX& y, Search& search)
 {
+  const VecX& F = qp.bounds.F;
   double fraction = std::numeric_limits<double>::infinity();
   int first = -1;
   for (int i = 0; i < static_cast<int>(y.size()); ++i) {
@@ -55,7 +56,7 @@ bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, 
   VecX met = search.x + fraction * (y - search.x);
   met[first] = y[first] > search.x[first] ? F[first] : -F[first];
   const VecX projected = y.cwiseMax(-F).cwiseMin(F);
-  if (!search.cautious && energy(S, s, projected) <= energy(S, s, met)) {
+  if (!search.cautious && energy(qp, projected) <= energy(qp, met)) {
     search.x = projected;
     for (int i = 0; i < static_cast<int>(y.size()); ++i)
       if (std::abs(search.x[i]) >= F[i]) search.free[static_cast<std::size_t>(i)] = false;
@@ -69,13 +70,15 @@ bool stop_at_bounds(const MatX& S, const VecX& s, const VecX& F, const VecX& y, 
 /// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal. A
 /// cautious search frees one: that with the longest way to go or, where round-off leaves no row a
 /// positive pivot, the steepest.
-bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Search& search)
+bool release(const BoxQp& qp, double tolerance, Search& search)
 {
-  const VecX gradient = S * search.x + s;
+  const MatX& S = qp.S;
+  const VecX& F = qp.bounds.F;
+  const VecX gradient = qp.gradient(search.x);
   std::vector<int> wrong;
   int farthest = -1, steepest = -1;
   double way = 0.0, slope = 0.0;
-  for (int i = 0; i < static_cast<int>(s.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(F.size()); ++i) {
     if (search.free[static_cast<std::size_t>(i)]) continue;
     const double inward = search.x[i] >= F[i] ? gradient[i] : -gradient[i];
     if (inward <= tolerance) continue;
@@ -99,34 +102,34 @@ bool release(const MatX& S, const VecX& s, const VecX& F, double tolerance, Sear
 
 }  // namespace
 
-BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
-                       int max_iterations)
+BoxSolution active_set(const BoxQp& qp, const VecX& start, int max_iterations)
 {
+  const VecX &s = qp.s, &F = qp.bounds.F;
   BoxSolution result;
   Search search{start, std::vector<bool>(static_cast<std::size_t>(s.size())), false};
   for (int i = 0; i < static_cast<int>(s.size()); ++i)
     search.free[static_cast<std::size_t>(i)] = std::abs(start[i]) < F[i];
-  const double tolerance = 1e-13 * (s.cwiseAbs().maxCoeff() + (S * F).cwiseAbs().maxCoeff());
+  const double tolerance = 1e-13 * (s.cwiseAbs().maxCoeff() + (qp.S * F).cwiseAbs().maxCoeff());
   double best = std::numeric_limits<double>::max();  // infinity minus infinity would be a NaN
   for (int k = 0; k < max_iterations; ++k) {
     std::vector<int> free;
     for (int i = 0; i < static_cast<int>(s.size()); ++i)
       if (search.free[static_cast<std::size_t>(i)]) free.push_back(i);
     if (!free.empty()) {
-      const VecX y = minimise_free(S, s, search.x, free);
+      const VecX y = minimise_free(qp, search.x, free);
       ++result.factorisations;
       bool leaves = false;
       for (int i : free) leaves = leaves || std::abs(y[i]) > F[i];
       if (leaves) {
-        if (!stop_at_bounds(S, s, F, y, search)) break;
+        if (!stop_at_bounds(qp, y, search)) break;
         continue;
       }
       search.x = y;
     }
-    const double now = energy(S, s, search.x);
+    const double now = energy(qp, search.x);
     if (now >= best - 1e-15 * std::abs(best)) search.cautious = true;
     best = std::min(best, now);
-    if (!release(S, s, F, tolerance, search)) {
+    if (!release(qp, tolerance, search)) {
       result.finished = true;
       break;
     }

@@ -28,11 +28,12 @@ VecX Bounds::mean_diagonal(const MatX& S) const
   return w;
 }
 
-double box_residual(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& x)
+double box_residual(const BoxQp& qp, const VecX& x)
 {
-  const VecX gradient = S * x + s;
+  const Bounds& bounds = qp.bounds;
+  const VecX gradient = qp.gradient(x);
   if (!gradient.allFinite()) return std::nan("");
-  const VecX w = bounds.mean_diagonal(S);
+  const VecX w = bounds.mean_diagonal(qp.S);
   const VecX natural = w.cwiseProduct(x - bounds.clip(x - gradient.cwiseQuotient(w)));
   double worst = natural.size() > 0 ? natural.cwiseAbs().maxCoeff() : 0.0;
   for (int i : bounds.pairs) worst = std::max(worst, natural.segment<2>(i).norm());

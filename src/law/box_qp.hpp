@@ -19,10 +19,20 @@ struct Bounds
   VecX mean_diagonal(const MatX& S) const;
 };
 
-/// Answer to  min ½ xᵀSx + sᵀx  within bounds.
+/// min ½ xᵀSx + sᵀx within bounds. Borrows all three.
+struct BoxQp
+{
+  const MatX& S;         ///< symmetric positive semidefinite (rows x rows) [m/N]
+  const VecX& s;         ///< (rows) [m]
+  const Bounds& bounds;  ///< of all rows
+
+  VecX gradient(const VecX& x) const { return S * x + s; }
+};
+
+/// Answer to a quadratic program within bounds.
 struct BoxSolution
 {
-  VecX x;
+  VecX x;  ///< (rows) [N]
   int factorisations = 0;
   bool finished = false;  ///< the method came to its own end; the caller judges the residual
 };
@@ -34,31 +44,29 @@ struct BoxSolution
 /// a shift towards the start (proximal point) makes the minimum unique, so small that the gradient
 /// it leaves is at most `tolerance` / 5 [m]; what a regular S determines is exact. `x` is the start
 /// when not finished.
-BoxSolution primal_dual_active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
-                                   double tolerance, int max_iterations);
+BoxSolution primal_dual_active_set(const BoxQp& qp, const VecX& start, double tolerance,
+                                   int max_iterations);
 
 /// The same with pairs (semismooth Newton on the natural map): a pair that slips stays on its
 /// circle, along which the gradient's length is its stiffness. Ends when the box residual is below
 /// `tolerance` / 10; given up when no fewer rows change for the third time. `x` is the start when
 /// not finished.
-BoxSolution pair_newton(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& start,
-                        double tolerance, int max_iterations);
+BoxSolution pair_newton(const BoxQp& qp, const VecX& start, double tolerance, int max_iterations);
 
 /// Monotone active set for S positive definite and bounds without pairs: every iteration minimises
 /// over the free rows; rows that leave the box stop at it (all at once while that lowers the
 /// energy, else the first one met), rows with a multiplier of the wrong sign are released (all at
 /// once while the energy falls, else the worst). Finite, because the energy never rises and sets do
 /// not repeat.
-BoxSolution active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
-                       int max_iterations);
+BoxSolution active_set(const BoxQp& qp, const VecX& start, int max_iterations);
 
 /// Primal-dual interior point with Mehrotra's corrector from a start drawn into the bounds;
 /// indifferent to a singular S. Rows that tend to a bound are put on it; ends when the box residual
 /// of that is below `tolerance` [m].
-BoxSolution interior_point(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& start,
-                           double tolerance, int max_iterations);
+BoxSolution interior_point(const BoxQp& qp, const VecX& start, double tolerance,
+                           int max_iterations);
 
 /// Largest w |x - clip(x - (S x + s) / w)| of rows and pairs, w their mean diagonal [m].
-double box_residual(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& x);
+double box_residual(const BoxQp& qp, const VecX& x);
 
 }  // namespace trocar::law

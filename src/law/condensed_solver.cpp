@@ -25,8 +25,7 @@ VecX take(const BoxSolution& answer, Multipliers& result)
 
 VecX interior(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
-  return take(interior_point(schur.S(), schur.s(), schur.bounds(), schur.start(),
-                             box_tolerance * settings.tolerance,
+  return take(interior_point(schur.qp(), schur.start(), box_tolerance * settings.tolerance,
                              std::min(settings.max_iterations, most_interior_steps)),
               result);
 }
@@ -34,17 +33,15 @@ VecX interior(SchurComplement& schur, const Settings& settings, Multipliers& res
 VecX active_set_search(SchurComplement& schur, const VecX& start, const Settings& settings,
                        Multipliers& result)
 {
-  return take(active_set(schur.S(), schur.s(), schur.bounds().F, start, settings.max_iterations),
-              result);
+  return take(active_set(schur.qp(), start, settings.max_iterations), result);
 }
 
 /// With discs: Newton, where it gets there and is not to be left out; else the interior point, and
 /// Newton from there.
 VecX discs(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
-  const MatX& S = schur.S();
   const auto newton = [&](const VecX& start) {
-    return pair_newton(S, schur.s(), schur.bounds(), start, settings.tolerance,
+    return pair_newton(schur.qp(), start, settings.tolerance,
                        std::min(settings.max_iterations, most_newton_steps));
   };
   if (settings.method != Method::interior_point) {
@@ -60,12 +57,11 @@ VecX discs(SchurComplement& schur, const Settings& settings, Multipliers& result
 VecX automatic(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
   if (const std::optional<VecX> slipping = schur.all_slipping()) return *slipping;
-  const MatX& S = schur.S();
-  const VecX& s = schur.s();
-  const BoxSolution warm = primal_dual_active_set(S, s, schur.bounds().F, schur.start(),
-                                                  settings.tolerance, most_warm_sets);
+  const BoxQp qp = schur.qp();
+  const BoxSolution warm =
+      primal_dual_active_set(qp, schur.start(), settings.tolerance, most_warm_sets);
   VecX x = take(warm, result);
-  if (!warm.finished || !(box_residual(S, s, schur.bounds(), x) <= settings.tolerance))
+  if (!warm.finished || !(box_residual(qp, x) <= settings.tolerance))
     x = interior(schur, settings, result);
   return x;
 }

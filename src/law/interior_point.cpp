@@ -27,13 +27,13 @@ struct Target
 class Newton
 {
  public:
-  Newton(const Inequalities& in, const MatX& S, const VecX& s, const Point& at) : in_(in), at_(at)
+  Newton(const Inequalities& in, const BoxQp& qp, const Point& at) : in_(in), at_(at)
   {
     for (std::size_t k = 0; k < in.pairs(); ++k)
       scaling_.emplace_back(in.cone(k, at.x), at.cones[k]);
-    dual_ = -(S * at.x + s);
+    dual_ = -qp.gradient(at.x);
     in.add_pull(at.z, at.cones, dual_);
-    factor_.compute(in.barrier(S, at.z.cwiseQuotient(at.c), scaling_));
+    factor_.compute(in.barrier(qp.S, at.z.cwiseQuotient(at.c), scaling_));
   }
   bool regular() const { return factor_.regular(); }
   const cone::Scaling& scaling(std::size_t k) const { return scaling_[k]; }
@@ -170,13 +170,13 @@ void move_centred(const Inequalities& in, Point& p, const Point& d)
 }
 
 /// The start drawn a little into the bounds, with the multipliers its gradient asks for.
-Point warm_point(const Inequalities& in, const MatX& S, const VecX& s, const Bounds& bounds,
-                 const VecX& start)
+Point warm_point(const Inequalities& in, const BoxQp& qp, const VecX& start)
 {
+  const Bounds& bounds = qp.bounds;
   constexpr double inwards = 0.1;  // of F, and of the mean gradient
   Point p{Bounds{(1.0 - inwards) * bounds.F, bounds.pairs}.clip(start), {}, {}, {}};
   p.c = in.values(p.x);
-  const VecX gradient = S * p.x + s;
+  const VecX gradient = qp.gradient(p.x);
   const double least = inwards * gradient.cwiseAbs().mean() + 1e-12;
   // c has the slopes ±1: what pulls a row back is the gradient's part along it.
   p.z = in.change(gradient).cwiseMax(0.0).array() + least;
@@ -189,23 +189,23 @@ Point warm_point(const Inequalities& in, const MatX& S, const VecX& s, const Bou
 
 }  // namespace
 
-BoxSolution interior_point(const MatX& S_in, const VecX& s_in, const Bounds& bounds_in,
-                           const VecX& start, double tolerance, int max_iterations)
+BoxSolution interior_point(const BoxQp& qp, const VecX& start, double tolerance, int max_iterations)
 {
-  const VecX& F_in = bounds_in.F;
+  const VecX& F_in = qp.bounds.F;
   const double force = std::max(F_in.maxCoeff(), 1e-300);
-  const double gap = s_in.cwiseAbs().maxCoeff() + (S_in * F_in).cwiseAbs().maxCoeff() + 1e-300;
-  const Bounds bounds{F_in.cwiseMax(1e-14 * force) / force, bounds_in.pairs};
+  const double gap = qp.s.cwiseAbs().maxCoeff() + (qp.S * F_in).cwiseAbs().maxCoeff() + 1e-300;
+  const Bounds bounds{F_in.cwiseMax(1e-14 * force) / force, qp.bounds.pairs};
   const Inequalities in(bounds);
-  const MatX S = S_in * (force / gap);
-  const VecX s = s_in / gap;
-  Point p = warm_point(in, S, s, bounds, start / force);
+  const MatX S = qp.S * (force / gap);
+  const VecX s = qp.s / gap;
+  const BoxQp scaled{S, s, bounds};
+  Point p = warm_point(in, scaled, start / force);
   BoxSolution result;
   for (int k = 0; k < max_iterations; ++k) {
     const VecX on = in.on_bounds(p.x, p.c, p.z, p.cones);
-    result.finished = gap * box_residual(S, s, bounds, on) <= tolerance;
+    result.finished = gap * box_residual(scaled, on) <= tolerance;
     if (result.finished) break;
-    const Newton newton(in, S, s, p);
+    const Newton newton(in, scaled, p);
     ++result.factorisations;
     if (!newton.regular()) break;
     const Point d = corrected_direction(in, newton, p);

@@ -110,21 +110,21 @@ bool step(const MatX& H, const VecX& gradient, const Bounds& bounds, const Slip&
 
 }  // namespace
 
-BoxSolution pair_newton(const MatX& S, const VecX& s, const Bounds& bounds, const VecX& start,
-                        double tolerance, int max_iterations)
+BoxSolution pair_newton(const BoxQp& qp, const VecX& start, double tolerance, int max_iterations)
 {
+  const Bounds& bounds = qp.bounds;
   constexpr int most_stalls = 3;
   const double shift = 0.1 * tolerance / std::max(bounds.F.maxCoeff(), 1e-300);
-  MatX H = S;
+  MatX H = qp.S;
   H.diagonal().array() += shift;
-  const VecX w = bounds.mean_diagonal(S);
+  const VecX w = bounds.mean_diagonal(qp.S);
   BoxSolution result{start, 0, false};
   VecX x = bounds.clip(start);
   std::vector<signed char> last;
   auto fewest = x.size() + 1;
   int stalls = 0;
   while (result.factorisations < max_iterations) {
-    const VecX gradient = S * x + s;
+    const VecX gradient = qp.gradient(x);
     const Slip slip = slip_at(bounds, x - gradient.cwiseQuotient(w), w);
     if (!last.empty()) {
       Eigen::Index changed = 0;
@@ -138,7 +138,7 @@ BoxSolution pair_newton(const MatX& S, const VecX& s, const Bounds& bounds, cons
     if (!step(H, gradient, bounds, slip, x) || !x.allFinite()) break;
     // On the bounds and no hair beside them: whether a pair slips is then no matter of degree.
     const VecX on = bounds.clip(x);
-    if (box_residual(S, s, bounds, on) > 0.1 * tolerance) continue;
+    if (box_residual(qp, on) > 0.1 * tolerance) continue;
     result.finished = true;
     result.x = on;
     break;

@@ -19,14 +19,15 @@ Sets sets_of(const VecX& x, const VecX& F)
   return sets;
 }
 
-/// Factor of H on the free rows of some sets.
-struct Factor
+/// The minimum with some sets held: a factor of H on the free rows.
+struct Held
 {
-  std::vector<int> free;
-  core::Cholesky cholesky;
+  Sets sets;
+  std::vector<int> free{};
+  core::Cholesky cholesky{};
 
   /// False when H is not positive definite there, by round-off.
-  bool make(const MatX& H, const Sets& sets)
+  bool factor(const MatX& H)
   {
     free.clear();
     for (int i = 0; i < static_cast<int>(sets.size()); ++i)
@@ -35,19 +36,18 @@ struct Factor
     cholesky.compute(H(free, free));
     return cholesky.regular();
   }
-};
 
-/// Puts x on the bounds of its sets and minimises ½ xᵀHx + hᵀx over the free rows.
-VecX minimise(const MatX& H, const VecX& h, const VecX& F, const Sets& sets, const Factor& factor,
-              VecX x)
-{
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    if (const int side = sets[static_cast<std::size_t>(i)]; side != 0) x[i] = side * F[i];
-  if (factor.free.empty()) return x;
-  const VecX gradient = H * x + h;
-  x(factor.free) -= factor.cholesky.solve(VecX(gradient(factor.free)));
-  return x;
-}
+  /// Puts x on the bounds of its sets and minimises ½ xᵀHx + hᵀx over the free rows.
+  VecX minimise(const MatX& H, const VecX& h, const VecX& F, VecX x) const
+  {
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (const int side = sets[static_cast<std::size_t>(i)]; side != 0) x[i] = side * F[i];
+    if (free.empty()) return x;
+    const VecX gradient = H * x + h;
+    x(free) -= cholesky.solve(VecX(gradient(free)));
+    return x;
+  }
+};
 
 /// Sets that x and its gradient ask for: rows outside the box go on it, rows pulled inwards by
 /// more than the tolerance go free.
@@ -74,38 +74,38 @@ int differences(const Sets& a, const Sets& b)
 
 }  // namespace
 
-BoxSolution primal_dual_active_set(const MatX& S, const VecX& s, const VecX& F, const VecX& start,
-                                   double tolerance, int max_iterations)
+BoxSolution primal_dual_active_set(const BoxQp& qp, const VecX& start, double tolerance,
+                                   int max_iterations)
 {
+  const VecX& F = qp.bounds.F;
   const double shift = 0.1 * tolerance / std::max(F.maxCoeff(), 1e-300);
-  MatX H = S;
+  MatX H = qp.S;
   H.diagonal().array() += shift;
   BoxSolution result;
   result.x = start.cwiseMax(-F).cwiseMin(F);
-  const VecX h = s - shift * result.x;
-  Sets sets = sets_of(result.x, F);
-  Factor factor;
+  const VecX h = qp.s - shift * result.x;
+  Held held{sets_of(result.x, F)};
   VecX x = result.x;
   int changes = static_cast<int>(x.size()) + 1;
   while (!result.finished && result.factorisations < max_iterations) {
     ++result.factorisations;
-    if (!factor.make(H, sets)) break;
-    x = minimise(H, h, F, sets, factor, x);
-    const Sets next = next_sets(x, H * x + h, F, sets, 0.1 * tolerance);
+    if (!held.factor(H)) break;
+    x = held.minimise(H, h, F, x);
+    const Sets next = next_sets(x, H * x + h, F, held.sets, 0.1 * tolerance);
     const int last_changes = changes;
-    changes = differences(sets, next);
+    changes = differences(held.sets, next);
     result.finished = changes == 0;
     // Far from the answer sets change in crowds, and one set after the other leads nowhere.
     const bool far = result.factorisations == 1 && 4 * changes > static_cast<int>(x.size());
     if (far || changes >= last_changes) break;
-    sets = next;
+    held.sets = next;
   }
   if (!result.finished) return result;
   // The shift set again at the answer fades: what S itself determines becomes exact.
   for (int round = 0; round < 2; ++round) {
     result.x = x;
-    x = minimise(H, s - shift * x, F, sets, factor, x);
-    if (next_sets(x, S * x + s, F, sets, 0.1 * tolerance) != sets) break;
+    x = held.minimise(H, qp.s - shift * x, F, x);
+    if (next_sets(x, qp.gradient(x), F, held.sets, 0.1 * tolerance) != held.sets) break;
     result.x = x;
   }
   return result;

@@ -75,22 +75,16 @@ void SchurComplement::eliminate()
   s_ -= Y.transpose() * W_bb_.half_solve(problem_->g(kept_));
 }
 
-const MatX& SchurComplement::S()
+BoxQp SchurComplement::qp()
 {
   eliminate();
-  return S_;
-}
-
-const VecX& SchurComplement::s()
-{
-  eliminate();
-  return s_;
+  return {S_, s_, rows_.bounds};
 }
 
 int SchurComplement::box_rank()
 {
   if (rows_.box.empty()) return 0;
-  return PivotedCholesky(S(), problem_->W.diagonal()(rows_.box).maxCoeff()).rank();
+  return PivotedCholesky(qp().S, problem_->W.diagonal()(rows_.box).maxCoeff()).rank();
 }
 
 std::optional<VecX> SchurComplement::all_slipping() const

@@ -30,8 +30,8 @@ class SchurComplement
   /// Factors W_bb. S is made when it is first asked for: where every point slips nobody does.
   explicit SchurComplement(const Problem& problem);
 
-  const MatX& S();  ///< [m/N]
-  const VecX& s();  ///< [m]
+  /// S, s and bounds, good while this lives.
+  BoxQp qp();
   const Bounds& bounds() const { return rows_.bounds; }
   /// Box multipliers to start from: the problem's own, those near a bound put on it, because a
   /// slipping point's bound may grow from step to step [N].

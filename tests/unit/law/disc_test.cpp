@@ -70,10 +70,10 @@ TEST(Discs, ABorderIsReachedFromWithin)
   S << .0015499098, .000484558, .000484558, .0025065061;
   const VecX s = (VecX(2) << .00059331801, .00200665009).finished();
   const Bounds bounds{VecX::Constant(2, 0.5), {0}};
-  const BoxSolution answer = interior_point(S, s, bounds, VecX::Zero(2), 1e-9, 100);
+  const BoxSolution answer = interior_point({S, s, bounds}, VecX::Zero(2), 1e-9, 100);
   EXPECT_TRUE(answer.finished);
   EXPECT_LE(answer.factorisations, 15);
-  EXPECT_LT(box_residual(S, s, bounds, answer.x), 1e-9);
+  EXPECT_LT(box_residual({S, s, bounds}, answer.x), 1e-9);
 }
 
 TEST(Discs, InteriorPointsNeedNoRegularityNorOneSizeOfDiscs)
@@ -81,8 +81,7 @@ TEST(Discs, InteriorPointsNeedNoRegularityNorOneSizeOfDiscs)
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Problem problem = with_discs(8, seed % 2 == 0 ? 60 : 16, seed);
     SchurComplement condensed(problem);
-    const BoxSolution answer = interior_point(condensed.S(), condensed.s(), condensed.bounds(),
-                                              condensed.start(), 1e-9, 100);
+    const BoxSolution answer = interior_point(condensed.qp(), condensed.start(), 1e-9, 100);
     EXPECT_TRUE(answer.finished) << seed;
     EXPECT_LE(answer.factorisations, 40) << seed;
   }
@@ -92,12 +91,10 @@ TEST(Discs, OfALastStepNeedFewFactorisations)
 {
   const Problem problem = with_discs(30, 120, 11);
   SchurComplement condensed(problem);
-  const BoxSolution cold = interior_point(condensed.S(), condensed.s(), condensed.bounds(),
-                                          condensed.start(), 1e-9, 100);
+  const BoxSolution cold = interior_point(condensed.qp(), condensed.start(), 1e-9, 100);
   ASSERT_TRUE(cold.finished);
   EXPECT_LE(cold.factorisations, 25);
-  const BoxSolution warm =
-      pair_newton(condensed.S(), condensed.s(), condensed.bounds(), 0.99 * cold.x, 1e-12, 12);
+  const BoxSolution warm = pair_newton(condensed.qp(), 0.99 * cold.x, 1e-12, 12);
   EXPECT_TRUE(warm.finished);
   EXPECT_LE(warm.factorisations, 5);
   EXPECT_LT((warm.x - cold.x).norm(), 1e-6 * cold.x.norm());
