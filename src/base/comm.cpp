@@ -75,6 +75,12 @@ double Comm::max(double value) const
   return value;
 }
 
+void Comm::max(core::VecX& values) const
+{
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
+                           MPI_MAX, comm_));
+}
+
 bool Comm::all(bool value) const
 {
   int flag = value ? 1 : 0;

@@ -24,6 +24,7 @@ class Comm
   double sum(double value) const;        ///< collective; equal on all ranks
   void sum(core::VecX& values) const;    ///< collective, in place
   double max(double value) const;        ///< collective
+  void max(core::VecX& values) const;    ///< collective, in place
   long long sum(long long value) const;  ///< collective
   bool all(bool value) const;            ///< collective: true when it is true on every rank
   bool any(bool value) const;            ///< collective

@@ -19,6 +19,18 @@ core::VecX lengths(const OwnedField& field)
       .transpose();
 }
 
+/// The largest rest of a node over its scale, none of which falls below `least`.
+double largest_part(const core::VecX& rest, const core::VecX& scale, double least)
+{
+  double worst = 0.0;
+  for (Eigen::Index a = 0; a < rest.size(); ++a)
+    if (!(rest[a] <= 0.0)) {
+      const double part = rest[a] / (scale[a] + least);
+      worst = std::isfinite(part) ? std::max(worst, part) : std::numeric_limits<double>::infinity();
+    }
+  return worst;
+}
+
 }  // namespace
 
 Sizes Tissue::no_sizes() const
@@ -60,14 +72,8 @@ Balance Tissue::balance(const TissueState& past, const OwnedField& u, const Time
   space_->comm().sum(sums);
   const double mine = scale.size() > 0 ? scale.maxCoeff() : 0.0;
   const double least = Balance::of_largest * space_->comm().max(mine);
-  double worst = 0.0;
-  for (Eigen::Index a = 0; a < rest.size(); ++a)
-    if (!(rest[a] <= 0.0)) {
-      const double part = rest[a] / (scale[a] + least);
-      worst = std::isfinite(part) ? std::max(worst, part) : std::numeric_limits<double>::infinity();
-    }
   Balance balance;
-  balance.worst = space_->comm().max(worst);
+  balance.worst = space_->comm().max(largest_part(rest, scale, least));
   balance.lost = sums.segment<3>(2).norm();
   balance.carried = std::max(sums[5], sums[6]);
   balance.rounded = unit_round_off * std::sqrt(sums[7]);

@@ -107,12 +107,14 @@ Folded Tissue::folded(const OwnedField& u) const
   const int none = mesh_->tet_count();
   Folded mine = elements_->folded(space_->with_ghosts(u));
   if (!u.value.allFinite()) mine.other = 0;
-  const auto first = [&](int tet) {
-    const double found = tet < 0 ? none : tet;
-    const auto of_all = static_cast<int>(-space_->comm().max(-found));
-    return of_all == none ? -1 : of_all;
+  core::VecX least(2);  // negative, so that the largest is that of the first tet
+  least << (mine.linear < 0 ? -none : -mine.linear), (mine.other < 0 ? -none : -mine.other);
+  space_->comm().max(least);
+  const auto first = [&](Eigen::Index k) {
+    const auto tet = static_cast<int>(-least[k]);
+    return tet == none ? -1 : tet;
   };
-  return {first(mine.linear), first(mine.other)};
+  return {first(0), first(1)};
 }
 
 }  // namespace trocar::tissue
