@@ -236,10 +236,6 @@ void add_radius_correction(Scenario& scenario)
       scenario.mesh.quadratic(), scenario.tissue.dilatation != tissue::Dilatation::pointwise);
   for (const needle::NeedleSettings& needle : scenario.needles)
     correction.radius.push_back(needle.section.outer);
-  for (const tissue::Material& material : scenario.tissue.materials) {
-    correction.shear.push_back(material.mu());
-    correction.poisson.push_back(material.poisson);
-  }
 }
 
 }  // namespace

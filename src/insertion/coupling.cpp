@@ -102,9 +102,8 @@ RadiusCorrection::Compliance radius_compliance(const Ground& ground, const Site&
                                                double length)
 {
   if (!ground.settings.radius_correction) return {};
-  return ground.settings.radius_correction->at(
-      body, ground.mesh.region[static_cast<std::size_t>(site.tet)],
-      local_edge(ground.mesh, site.tet), length);
+  return ground.settings.radius_correction->at(body, ground.elasticity(site.tet),
+                                               local_edge(ground.mesh, site.tet), length);
 }
 
 /// A material place and where it is on the shaft.
@@ -207,8 +206,10 @@ double passed_part(double way, double half)
 
 /// A needle that one point alone holds could turn about it, until its tip meets the next place for
 /// one. Until then the last half edge that the tip has passed, or within the first one a part of
-/// it, holds it as well: a material place, that does not go along with the tip. Returns the first
-/// of two rows; -1: none is passed.
+/// it, holds it as well: a material place, that does not go along with the tip. A tet holds its
+/// places together as a body of its own size, however near to each other they are: within the first
+/// half edge the rows give way by what is missing. Returns the first of two rows; -1: none is
+/// passed.
 int add_lever_rows(const Ground& ground, const InsertionState& state, const Iterate& at,
                    constraint::Set& set)
 {
@@ -220,7 +221,8 @@ int add_lever_rows(const Ground& ground, const InsertionState& state, const Iter
   if (!tip || tip->arc - held.arc < 0.5 * std::min(passed, half))
     return -1;  // the way is mostly through a void
   const double compliance =
-      radius_compliance(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral;
+      radius_compliance(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral +
+      lever_compliance(ground.elasticity(tip->tet), passed, half);
   return add_lateral_rows(Hold(tip->anchor, at), compliance, Vec3::Zero(), set.next_point(), set);
 }
 

@@ -38,10 +38,13 @@ struct InsertionSettings
 /// this room is collective: every rank computes the same from the same.
 struct Ground
 {
-  Ground(const mesh::Mesh& mesh, const mesh::Locator& locator, InsertionSettings settings);
+  /// `tissues`: by volume of the mesh.
+  Ground(const mesh::Mesh& mesh, const mesh::Locator& locator, InsertionSettings settings,
+         std::vector<Elasticity> tissues);
 
   /// f_cut of the tissue a tet belongs to [N]; 0 in none (-1).
   double cutting(int tet) const;
+  const Elasticity& elasticity(int tet) const;  ///< of the tissue a tet belongs to
   /// Force it takes to go at X from one tet into another (-1: none) [N]: a membrane's threshold,
   /// and what is cut with a force is not entered without it.
   double border(int from, int to, const Vec3& X) const;
@@ -49,6 +52,7 @@ struct Ground
   const mesh::Mesh& mesh;
   const mesh::Locator& locator;
   InsertionSettings settings;
+  std::vector<Elasticity> tissues;  ///< by volume of the mesh
   Membranes membranes;
   bool resists = false;  ///< some border or tissue resists the tip
 };

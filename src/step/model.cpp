@@ -24,7 +24,10 @@ Model::Model(const Scene& of, const base::Comm& comm)
   }
   if (needles.empty()) return;
   locator.emplace(scene.mesh);
-  ground.emplace(scene.mesh, *locator, scene.insertion);
+  std::vector<insertion::Elasticity> tissues;
+  for (const tissue::Material& material : scene.tissue.materials)
+    tissues.push_back({material.mu(), material.poisson});
+  ground.emplace(scene.mesh, *locator, scene.insertion, std::move(tissues));
 }
 
 bool Model::beams() const

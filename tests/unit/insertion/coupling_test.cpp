@@ -21,7 +21,7 @@ struct Inserted
         u{core::VecX::Zero(3 * mesh.node_count())},
         tissue(mesh, locator, u),
         needle(settings()),
-        ground(mesh, locator, laws(friction, fit)),
+        ground(mesh, locator, laws(friction, fit), {{2000.0, 0.4}}),
         state(start(ground, needle))
   {
   }
@@ -39,7 +39,7 @@ struct Inserted
   {
     InsertionSettings laws{
         {Placement::spacing, 0.012, 0.3}, {TissueFriction{friction, friction}}, 0.0, 1e-9};
-    if (fit > 0.0) laws.radius_correction = RadiusCorrection{{0.0005}, {2000.0}, {0.4}, fit};
+    if (fit > 0.0) laws.radius_correction = RadiusCorrection{{0.0005}, fit};
     return laws;
   }
   /// Compliance of the rows in tissue that gives way to every probe by itself [m/N], and the rows.
@@ -83,13 +83,14 @@ TEST(Tributary, BordersAreHalfWayBetweenThePoints)
 TEST(RadiusCorrection, IsTheLogarithmOfALineLoad)
 {
   const double mu = 2000.0, nu = 0.4, r = 0.0005, length = 0.01;
-  const RadiusCorrection correction{{r}, {mu}, {nu}, 0.5};
-  const auto coarse = correction.at(0, 0, 100.0 * r, length);
+  const RadiusCorrection correction{{r}, 0.5};
+  const Elasticity tissue{mu, nu};
+  const auto coarse = correction.at(0, tissue, 100.0 * r, length);
   const double line = std::log(50.0) / (2.0 * std::numbers::pi * mu * length);
   EXPECT_NEAR(coarse.axial, line, 1e-6 * line);
   EXPECT_NEAR(coarse.lateral, line * 1.4 / 2.4, 1e-6 * line);
-  EXPECT_LT(correction.at(0, 0, 0.2 * r, length).axial, 1e-4 * line);
-  EXPECT_EQ(correction.at(0, 0, 100.0 * r, 0.0).axial, 0.0);
+  EXPECT_LT(correction.at(0, tissue, 0.2 * r, length).axial, 1e-4 * line);
+  EXPECT_EQ(correction.at(0, tissue, 100.0 * r, 0.0).axial, 0.0);
 }
 
 // Dashpot and dry friction act on the same piece of shaft: the tissue gives way to their sum, and

@@ -226,8 +226,8 @@ TEST(Tributary, LengthsAddUpToTheDepthWhateverTheMesh)
   const Scene scene(shape);
   for (const PlacementSettings& placement :
        {PlacementSettings{}, raw, PlacementSettings{Placement::spacing, 0.0031, 0.3}}) {
-    const Ground ground(scene.mesh, scene.locator,
-                        {placement, {{{1, 1, 0}, {1, 1, 0}}}, 0.0, 1e-9});
+    const Ground ground(scene.mesh, scene.locator, {placement, {{{1, 1, 0}, {1, 1, 0}}}, 0.0, 1e-9},
+                        {{2000.0, 0.4}});
     needle::NeedleSettings settings;
     settings.model = needle::Model::rigid;
     settings.section = {0.0005, 0.0, 2e11, 0.3};

@@ -25,7 +25,7 @@ TEST(ConstraintProblem, WIsTheDenseProduct)
   const mesh::Locator locator(body.mesh);
   insertion::InsertionSettings coupling = scenario.insertion;
   coupling.placement.merge = 0.0;
-  const insertion::Ground ground(body.mesh, locator, coupling);
+  const insertion::Ground ground(body.mesh, locator, coupling, {{2000.0, 0.4}});
   scenario.needles[0].motion.inserted = 0.04;
   const needle::Needle needle(scenario.needles[0]);
   insertion::InsertionState state = insertion::start(ground, needle);
@@ -82,7 +82,8 @@ TEST(PaperBeam, RowCountsOfTableOne)
     const mesh::Mesh mesh = test::block({49, 5, 5, Vec3(0.15, 0.02, 0.02)});
     const mesh::Locator locator(mesh);
     const insertion::Ground ground(mesh, locator,
-                                   {{Placement::spacing, spacing, 0.3}, test::same({}), 0.0, 1e-9});
+                                   {{Placement::spacing, spacing, 0.3}, test::same({}), 0.0, 1e-9},
+                                   {{2000.0, 0.4}});
     needle::NeedleSettings settings;
     settings.section = {0.0005, 0.0, 2e11, 0.3};
     settings.motion.entry = Vec3(0, 0.0093, 0.0107);
