@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <numeric>
 
 #include "base/petsc.hpp"
 
@@ -53,14 +54,20 @@ Comm::Comm(MPI_Comm comm) : comm_(comm)
 
 double Comm::sum(double value) const
 {
-  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, comm_));
-  return value;
+  core::VecX one = core::VecX::Constant(1, value);
+  sum(one);
+  return one[0];
 }
 
+// MPI may sum in any order, another one in another run. Rank by rank it is always the same.
 void Comm::sum(core::VecX& values) const
 {
-  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
-                           MPI_SUM, comm_));
+  if (size_ == 1) return;
+  core::MatX all(values.size(), size_);
+  TROCAR_MPI(MPI_Allgather(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, all.data(),
+                           static_cast<int>(values.size()), MPI_DOUBLE, comm_));
+  values = all.col(0);
+  for (int rank = 1; rank < size_; ++rank) values += all.col(rank);
 }
 
 long long Comm::sum(long long value) const
@@ -113,6 +120,32 @@ void Comm::broadcast(std::vector<int>& values) const
 {
   broadcast_array(values, MPI_INT);
 }
+template <class T>
+std::vector<T> Comm::gather_array(const std::vector<T>& values, MPI_Datatype type) const
+{
+  const int mine = static_cast<int>(values.size());
+  std::vector<int> counts(static_cast<std::size_t>(size_)), starts(counts.size(), 0);
+  TROCAR_MPI(MPI_Gather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm_));
+  std::vector<T> all;
+  if (root()) {
+    std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
+    all.resize(static_cast<std::size_t>(starts.back() + counts.back()));
+  }
+  TROCAR_MPI(MPI_Gatherv(values.data(), mine, type, all.data(), counts.data(), starts.data(), type,
+                         0, comm_));
+  return all;
+}
+
+std::vector<double> Comm::gather(const std::vector<double>& values) const
+{
+  return gather_array(values, MPI_DOUBLE);
+}
+
+std::vector<int> Comm::gather(const std::vector<int>& values) const
+{
+  return gather_array(values, MPI_INT);
+}
+
 void Comm::broadcast(std::vector<long long>& values) const
 {
   broadcast_array(values, MPI_LONG_LONG);
@@ -127,10 +160,20 @@ void Comm::broadcast(std::string& text) const
 
 void Comm::broadcast(std::vector<std::string>& words) const
 {
-  std::vector<int> count{static_cast<int>(words.size())};
-  broadcast(count);
-  words.resize(static_cast<std::size_t>(count.front()));
-  for (std::string& word : words) broadcast(word);
+  std::string text;
+  std::vector<int> lengths;
+  for (const std::string& word : words) {
+    text += word;
+    lengths.push_back(static_cast<int>(word.size()));
+  }
+  broadcast(lengths);
+  broadcast(text);
+  words.clear();
+  std::size_t at = 0;
+  for (int length : lengths) {
+    words.push_back(text.substr(at, static_cast<std::size_t>(length)));
+    at += static_cast<std::size_t>(length);
+  }
 }
 
 void on_root(const Comm& comm, const std::function<void()>& work)

@@ -21,13 +21,18 @@ class Comm
   int size() const noexcept { return size_; }
   bool root() const noexcept { return rank_ == 0; }
 
-  double sum(double value) const;        ///< collective; equal on all ranks
-  void sum(core::VecX& values) const;    ///< collective, in place
+  double sum(double value) const;        ///< in the order of ranks; collective, equal on all
+  void sum(core::VecX& values) const;    ///< likewise, in place
   double max(double value) const;        ///< collective
   void max(core::VecX& values) const;    ///< collective, in place
   long long sum(long long value) const;  ///< collective
   bool all(bool value) const;            ///< collective: true when it is true on every rank
   bool any(bool value) const;            ///< collective
+
+  /// Every rank's values, one behind the other in the order of ranks, on rank 0; nothing elsewhere.
+  /// Collective.
+  std::vector<double> gather(const std::vector<double>& values) const;
+  std::vector<int> gather(const std::vector<int>& values) const;
 
   /// Root's values on every rank; sizes may differ before the call. Collective.
   void broadcast(std::vector<double>& values) const;
@@ -39,6 +44,8 @@ class Comm
  private:
   template <class T>
   void broadcast_array(std::vector<T>& values, MPI_Datatype type) const;
+  template <class T>
+  std::vector<T> gather_array(const std::vector<T>& values, MPI_Datatype type) const;
 
   MPI_Comm comm_;
   int rank_ = 0;

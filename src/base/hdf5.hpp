@@ -78,6 +78,12 @@ class H5File
   /// Names of what is at the top.
   std::vector<std::string> top() const;
 
+  bool has(const std::string& path) const;
+  /// A dataset's values, row-major.
+  std::vector<double> read_reals(const std::string& path) const;
+  std::vector<std::int64_t> read_integers(const std::string& path) const;
+  std::vector<std::string> read_words(const std::string& path) const;
+
   /// The file as it would be on disk.
   std::string bytes() const;
 
@@ -86,6 +92,8 @@ class H5File
   H5Id checked(std::int64_t id, H5Id::Close close, const std::string& what) const;
   void check(int status, const std::string& what) const;
   H5Id open_object(const std::string& path) const;
+  template <class Number>
+  std::vector<Number> read_block(const std::string& path, std::int64_t type) const;
   void write_block(const std::string& path, const void* values, std::int64_t type,
                    std::size_t count, std::size_t columns, const std::string& units);
 

@@ -24,21 +24,29 @@ struct Ledger
   std::int64_t steps = 0;               ///< accepted steps
   std::int64_t rejected_steps = 0;      ///< steps retried with a smaller h
 
+  using Count = std::int64_t Ledger::*;
+  static constexpr std::array<std::pair<std::string_view, Count>, 13> members()
+  {
+    return {{{"assemblies", &Ledger::assemblies},
+             {"factorisations", &Ledger::factorisations},
+             {"solves", &Ledger::solves},
+             {"half_sweeps", &Ledger::half_sweeps},
+             {"columns_built", &Ledger::columns_built},
+             {"columns_reused", &Ledger::columns_reused},
+             {"constraint_solves", &Ledger::constraint_solves},
+             {"surface_passes", &Ledger::surface_passes},
+             {"pressure_updates", &Ledger::pressure_updates},
+             {"contact_queries", &Ledger::contact_queries},
+             {"stress_evaluations", &Ledger::stress_evaluations},
+             {"steps", &Ledger::steps},
+             {"rejected_steps", &Ledger::rejected_steps}}};
+  }
   std::array<std::pair<std::string_view, std::int64_t>, 13> entries() const
   {
-    return {{{"assemblies", assemblies},
-             {"factorisations", factorisations},
-             {"solves", solves},
-             {"half_sweeps", half_sweeps},
-             {"columns_built", columns_built},
-             {"columns_reused", columns_reused},
-             {"constraint_solves", constraint_solves},
-             {"surface_passes", surface_passes},
-             {"pressure_updates", pressure_updates},
-             {"contact_queries", contact_queries},
-             {"stress_evaluations", stress_evaluations},
-             {"steps", steps},
-             {"rejected_steps", rejected_steps}}};
+    std::array<std::pair<std::string_view, std::int64_t>, 13> all;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      all[i] = {members()[i].first, this->*members()[i].second};
+    return all;
   }
 };
 

@@ -38,25 +38,28 @@ class PolarBatch
   {
     constexpr int most = 50;
     constexpr double far = 1e-2, enough = 1e-15;  // the error after it is half the change squared
-    double change = 1.0;
-    for (int k = 0; k < most && change > enough; ++k) change = iterate(change > far).maxCoeff();
+    Lanes change = Lanes::Ones();
+    for (int k = 0; k < most && (change > enough).any(); ++k) change = iterate(change, far, enough);
   }
 
  private:
-  /// One iteration; the square of the change.
-  Lanes iterate(bool scaled)
+  /// One iteration of the lanes that have not come to rest, `before` being the square of the last
+  /// change; gives the next one. Every lane for itself: a rotation must not depend on which other
+  /// ones are beside it, which another rank may see otherwise.
+  Lanes iterate(const Lanes& before, double far, double enough)
   {
     const Matrix C = cofactors();
     const Lanes inverse_det = (X_[0] * C[0] + X_[1] * C[1] + X_[2] * C[2]).inverse();
     Lanes half_gamma = Lanes::Constant(0.5);
     Lanes half_inverse = 0.5 * inverse_det;
-    if (scaled) {
+    if ((before > far).any()) {
       Lanes of_X = Lanes::Zero(), of_C = Lanes::Zero();
       for (std::size_t i = 0; i < 9; ++i) {
         of_X += X_[i].square();
         of_C += C[i].square();
       }
-      const Lanes gamma = ((of_C / of_X).sqrt() * inverse_det.abs()).sqrt();
+      const Lanes gamma =
+          (before > far).select(((of_C / of_X).sqrt() * inverse_det.abs()).sqrt(), 1.0);
       half_gamma *= gamma;
       half_inverse /= gamma;
     }
@@ -64,9 +67,9 @@ class PolarBatch
     for (std::size_t i = 0; i < 9; ++i) {
       const Lanes next = half_gamma * X_[i] + half_inverse * C[i];
       change += (next - X_[i]).square();
-      X_[i] = next;
+      X_[i] = (before > enough).select(next, X_[i]);
     }
-    return change;
+    return (before > enough).select(change, 0.0);
   }
 
   /// det(X) X⁻ᵀ.

@@ -214,6 +214,24 @@ void add_compliance(std::vector<OptionSpec>& t)
   t.insert(t.end(), rest.begin(), rest.end());
 }
 
+void add_checkpoints(std::vector<OptionSpec>& t)
+{
+  const std::vector<OptionSpec> rest{
+      count("checkpoint_every", "0", 0, 1e9, "checkpoint every so many steps; 0 = none"),
+      not_negative("checkpoint_seconds", "0", "s",
+                   "checkpoint after the step in which so much wall time has passed since the last "
+                   "one; 0 = none"),
+      not_negative("time_wall", "0", "s",
+                   "wall time after which the run ends with a checkpoint and exit code 75, as it "
+                   "does on SIGUSR1; 0 = none"),
+      word("restart", "", "folder of results in which a run goes on from its last checkpoint"),
+      word("restart_from", "",
+           "folder whose last checkpoint this run begins with, its results going to output_dir; "
+           "needles may move otherwise from there on"),
+  };
+  t.insert(t.end(), rest.begin(), rest.end());
+}
+
 void add_output(std::vector<OptionSpec>& t)
 {
   const std::vector<OptionSpec> rest{
@@ -248,8 +266,9 @@ void add_output(std::vector<OptionSpec>& t)
 std::vector<OptionSpec> build_table()
 {
   std::vector<OptionSpec> t = general_options();
-  for (auto* add : {add_tissue, add_boundary, add_needles, add_insertion, add_tip,
-                    add_cavity_options, add_constraint, add_compliance, add_output})
+  for (auto* add :
+       {add_tissue, add_boundary, add_needles, add_insertion, add_tip, add_cavity_options,
+        add_constraint, add_compliance, add_checkpoints, add_output})
     add(t);
   return t;
 }

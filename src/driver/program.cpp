@@ -8,94 +8,14 @@
 #include <string>
 #include <thread>
 
-#include "base/petsc.hpp"
-#include "core/stopwatch.hpp"
-#include "core/words.hpp"
-#include "driver/log.hpp"
+#include "core/failure.hpp"
 #include "driver/option_list.hpp"
-#include "driver/petsc_options.hpp"
 #include "driver/provenance.hpp"
-#include "driver/recorder.hpp"
-#include "driver/reports.hpp"
+#include "driver/run.hpp"
 #include "driver/signals.hpp"
-#include "io/size_field.hpp"
 
 namespace trocar::driver {
 namespace {
-
-/// Hands what a run tells to results and log.
-class RunObserver final : public step::Observer
-{
- public:
-  /// Fields are written every so many steps, and with the last one.
-  RunObserver(Recorder& recorder, Log& log, long every, long steps)
-      : recorder_(recorder), log_(log), every_(every), steps_(steps)
-  {
-  }
-
-  void accepted(const step::State& state, const step::StepReport& report,
-                const step::Progress& at) override
-  {
-    const bool fields = at.whole && (at.nominal == steps_ || at.nominal % every_ == 0);
-    recorder_.record(state, report, at.accepted, at.seconds, fields);
-    log_.step(at.accepted, state, report);
-  }
-
-  void rejected(double t, const std::string& why) override
-  {
-    log_.note("step to t = " + core::shown(t) + " s rejected: " + why);
-  }
-
- private:
-  Recorder& recorder_;
-  Log& log_;
-  long every_, steps_;
-};
-
-/// Every step or point of a scenario; gives the last state. Collective.
-step::State run_to_end(step::Model& model, const Scenario& scenario, Recorder& recorder, Log& log)
-{
-  const bool swept = scenario.pv.has_value();
-  RunObserver observer(recorder, log, swept ? 1 : scenario.output.every,
-                       step::step_count(scenario.time));
-  step::TimeStepper stepper(model, observer);
-  step::State start = stepper.start();
-  if (!swept) return stepper.run(std::move(start));
-  post::PvSweep sweep = post::sweep_volume(model, *scenario.pv, start, observer);
-  report_pv_curve(sweep.curve, recorder, log);
-  return std::move(sweep.end);
-}
-
-void run_scene(int argc, char** argv, const base::Comm& comm)
-{
-  const Invocation invocation = read_invocation(argc, argv, comm);
-  const base::PetscSession petsc(invocation.petsc);
-  core::Options options(option_table(), invocation.given);
-  const Scenario scenario = read_scenario(options, comm);
-  const core::Stopwatch watch;
-  step::Model model(scenario, comm);
-  model.tissue.analyse();
-  Log log(model, scenario);
-  if (!invocation.outdated.empty())
-    log.note("-edges and -edge_* are -conduits and -conduit_* now; the old names, here -" +
-             invocation.outdated.front() + ", go with the next version");
-  log.plan();
-  step::prepare(model);
-  refuse_unused(model.tissue.factor().solver().describe());
-  log.set_up(watch.seconds());
-  if (scenario.check_only) {
-    log.note("check passed: nothing was run");
-    return;
-  }
-  if (!scenario.output.size_field.empty())
-    base::on_root(comm, [&] { io::require_size_field(scenario.output.size_field); });
-  Recorder recorder(model, scenario, invocation, options.resolved());
-  if (scenario.output.locking_gauge) report_locking(model, recorder, log);
-  const step::State end = run_to_end(model, scenario, recorder, log);
-  if (scenario.output.error_estimate) report_error(model, scenario.output, end, recorder, log);
-  recorder.close();
-  log.finish();
-}
 
 /// True when every rank comes here within two seconds: then the failure was agreed and all may
 /// leave in order. Else somebody waits in a collective call that will never complete.
@@ -148,8 +68,7 @@ int run_program(int argc, char** argv, MPI_Comm world)
   const base::Comm comm(own);
   handle_signals(comm.root());
   try {
-    run_scene(argc, argv, comm);
-    return 0;
+    return static_cast<int>(run_scene(argc, argv, comm));
   } catch (const core::Failure& failure) {
     return fail(comm, alarm, static_cast<int>(failure.code()), failure.what());
   } catch (const std::bad_alloc&) {

@@ -42,6 +42,13 @@ std::string build_description()
          build_info::build_type + ", " + build_info::compiler + "), PETSc " + petsc_version();
 }
 
+std::string restart_note(const io::Checkpoint& from, const Invocation& invocation)
+{
+  return core::utc_now() + ": after step " + std::to_string(from.time.accepted) +
+         ", t = " + core::shown(from.time.now) + " s, by " + build_description() + ": " +
+         core::join(invocation.arguments, " ");
+}
+
 io::Provenance provenance(const step::Model& model, const Invocation& invocation,
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver)

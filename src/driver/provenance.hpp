@@ -17,4 +17,7 @@ io::Provenance provenance(const step::Model& model, const Invocation& invocation
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver);
 
+/// Who went on from where, one line.
+std::string restart_note(const io::Checkpoint& from, const Invocation& invocation);
+
 }  // namespace trocar::driver

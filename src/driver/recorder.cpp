@@ -3,7 +3,9 @@
 #include <cstdio>
 
 #include "driver/provenance.hpp"
+#include "driver/restart.hpp"
 #include "post/stress_fields.hpp"
+#include "step/archive.hpp"
 
 namespace trocar::driver {
 namespace {
@@ -64,17 +66,40 @@ std::vector<io::Curve> needle_curves(const step::Model& model, const step::State
 }  // namespace
 
 Recorder::Recorder(const step::Model& model, const Scenario& scenario, const Invocation& invocation,
-                   const std::vector<core::ResolvedOption>& options)
+                   const std::vector<core::ResolvedOption>& options, const io::Checkpoint* from)
     : model_(&model), output_(&scenario.output), histories_(histories(scenario))
 {
   const std::string solver = model.tissue.factor().solver().describe();
   base::on_root(model.space.comm(), [&] {
+    options_ = options_with_hashes(options);
     std::vector<io::Series> series;
     for (const History& history : histories_) series.push_back(history.series);
-    results_.emplace(scenario.output.folder, scenario.mesh,
-                     provenance(model, invocation, options, solver), series,
-                     static_cast<std::size_t>(step::step_count(scenario.time)) + 1);
-    if (!results_->remark().empty()) std::printf("note: %s\n", results_->remark().c_str());
+    const std::string& folder = output_->folder;
+    if (from && !scenario.restart.branch) {
+      results_.emplace(folder, scenario.mesh, series, *from, restart_note(*from, invocation));
+    } else {
+      io::Provenance origin = provenance(model, invocation, options, solver);
+      if (from) origin.texts.emplace_back("restart_from", restart_note(*from, invocation));
+      results_.emplace(folder, scenario.mesh, origin, series,
+                       static_cast<std::size_t>(step::step_count(scenario.time)) + 1);
+    }
+    for (const std::string& remark : results_->remarks()) std::printf("note: %s\n", remark.c_str());
+  });
+}
+
+void Recorder::checkpoint(const step::State& state, const step::Progress& at)
+{
+  io::Checkpoint now;
+  now.state = step::archived(state, model_->space);
+  base::on_root(model_->space.comm(), [&] {
+    const step::TimeSettings& time = model_->scene.time;
+    now.version = build_description();
+    now.options = options_;
+    now.time = {state.t, time.step, time.asked, time.end, at.nominal, at.accepted};
+    for (const auto& [name, count] : model_->ledger.entries())
+      now.ledger.emplace_back(std::string(name), count);
+    results_->tell(now);
+    io::write_checkpoint(results_->folder(), now);
   });
 }
 

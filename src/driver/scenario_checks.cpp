@@ -32,6 +32,12 @@ void refuse_idle(const Scenario& scenario)
          "out");
   refuse(scenario.output.locking_gauge && scenario.cavities.cavities.empty(),
          "locking_gauge: there is no cavity (-cavities)");
+  const CheckpointSettings& checkpoint = scenario.checkpoint;
+  const bool no_steps = scenario.pv || scenario.time.end == 0.0;
+  refuse(no_steps && checkpoint.every > 0, "checkpoint_every: there are no steps in time");
+  refuse(no_steps && checkpoint.seconds > 0.0, "checkpoint_seconds: there are no steps in time");
+  refuse(no_steps && checkpoint.wall > 0.0, "time_wall: there are no steps in time");
+  refuse(no_steps && !scenario.restart.folder.empty(), "restart: there are no steps in time");
   refuse(scenario.insertion.radius_correction && scenario.needles.empty(),
          "insertion_radius_correction: there is no needle (-needles)");
   refuse(scenario.insertion.radius_correction && scenario.insertion.eta > 0.0,

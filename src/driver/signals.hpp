@@ -1,10 +1,20 @@
 #pragma once
 
+#include <string>
+
 namespace trocar::driver {
 
-/// From here on a closed terminal or pipe does not end the run (SIGPIPE), and SIGHUP, SIGINT and
-/// SIGTERM end it at once with 128 + their number: everything written so far is whole at any
-/// moment. `speaks`: with one line, for one rank of all.
+/// From here on a closed terminal or pipe does not end the run (SIGPIPE). SIGHUP, SIGINT and
+/// SIGTERM end it at once: with 75 when a checkpoint stands, else with 128 + their number;
+/// everything written so far is whole at any moment. SIGUSR1 is a wish (see
+/// `checkpoint_wished`). `speaks`: with one line, for one rank of all.
 void handle_signals(bool speaks);
+
+/// From here on a checkpoint stands: what is to be done with it is part of the line that a signal
+/// ends the run with.
+void tell_of_checkpoint(const std::string& how_to_go_on);
+
+/// SIGUSR1 came to this rank: a checkpoint after the step, and an end there.
+bool checkpoint_wished();
 
 }  // namespace trocar::driver

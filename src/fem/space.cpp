@@ -21,7 +21,7 @@ std::vector<int> exclusive_sum(const std::vector<int>& counts)
 
 Space::Space(const mesh::Mesh& mesh, const std::vector<int>& node_owner, const base::Comm& comm,
              int overlap_layers)
-    : comm_(comm), nodes_per_tet_(mesh.nodes_per_tet())
+    : comm_(comm), tets_of_mesh_(mesh.tet_count()), nodes_per_tet_(mesh.nodes_per_tet())
 {
   number_nodes(node_owner);
   collect_local_tets(mesh, node_owner, overlap_layers);
@@ -138,6 +138,40 @@ GlobalField Space::gather(const OwnedField& field) const
   for (int node = 0; node < global(); ++node)
     result.node(node) = ordered.segment<3>(3 * number_[index(node)]);
   return result;
+}
+
+std::vector<double> Space::gather_tets(std::span<const double> values) const
+{
+  const std::size_t width = tets() > 0 ? values.size() / tets() : 0;
+  std::vector<int> mine;  // a tet is told by the owner of its first node
+  std::vector<double> numbers;
+  for (std::size_t t = 0; t < tets(); ++t) {
+    if (nodes(t).front() >= owned_) continue;
+    mine.push_back(file_tet(t));
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(width * t);
+    numbers.insert(numbers.end(), first, first + static_cast<std::ptrdiff_t>(width));
+  }
+  const std::vector<int> tet = comm_.gather(mine);
+  const std::vector<double> number = comm_.gather(numbers);
+  if (tet.empty()) return {};
+  const std::size_t each = number.size() / tet.size();
+  std::vector<double> ordered(number.size());
+  for (std::size_t i = 0; i < tet.size(); ++i)
+    std::copy_n(number.begin() + static_cast<std::ptrdiff_t>(each * i), each,
+                ordered.begin() + static_cast<std::ptrdiff_t>(each * index(tet[i])));
+  return ordered;
+}
+
+std::vector<double> Space::of_local_tets(std::span<const double> values) const
+{
+  const std::size_t each = values.size() / index(tets_of_mesh_);
+  std::vector<double> local;
+  local.reserve(each * tets());
+  for (int tet : file_tet_) {
+    const auto part = values.subspan(each * index(tet), each);
+    local.insert(local.end(), part.begin(), part.end());
+  }
+  return local;
 }
 
 OwnedField Space::restrict_to_owned(const GlobalField& field) const

@@ -39,6 +39,16 @@ struct GlobalField
   auto node(int file_node) const { return value.segment<3>(3 * file_node); }
 };
 
+/// How a state shows values by integration point of the local tets, as many in each of them: other
+/// ranks have other parts of such a list.
+template <class List>
+struct ByPoint
+{
+  List& list;
+};
+template <class List>
+ByPoint(List&) -> ByPoint<List>;
+
 /// The dof map of linear or quadratic tets: three dofs per node; each rank owns the nodes the
 /// partition gives it, numbered contiguously by rank and in file order within a rank. A rank's
 /// local tets are all tets that touch a node it owns, so that it can assemble its own rows without
@@ -67,6 +77,7 @@ class Space
   int owned_local(int file_node) const;
 
   int nodes_per_tet() const { return nodes_per_tet_; }
+  int tets_of_mesh() const { return tets_of_mesh_; }
   std::size_t tets() const { return file_tet_.size(); }  ///< local tets, in file order
   int file_tet(std::size_t local_tet) const { return file_tet_[local_tet]; }
   /// Local nodes of a local tet, `nodes_per_tet`, as `mesh::TetNodes` has them.
@@ -81,6 +92,11 @@ class Space
   /// Sums every rank's contributions to a node at its owner. Collective.
   OwnedField sum_at_owners(const GhostedField& field) const;
   GlobalField gather(const OwnedField& field) const;  ///< collective, on every rank
+  /// Numbers by local tet, as many of each, of all tets in file order on rank 0; nothing elsewhere.
+  /// Collective.
+  std::vector<double> gather_tets(std::span<const double> values) const;
+  /// The local tets' part of such a list. Not collective.
+  std::vector<double> of_local_tets(std::span<const double> values) const;
   /// The owned part of a global field. Not collective.
   OwnedField restrict_to_owned(const GlobalField& field) const;
 
@@ -97,6 +113,7 @@ class Space
   base::Comm comm_;
   int owned_ = 0;
   int first_ = 0;
+  int tets_of_mesh_ = 0;
   std::vector<int> number_;      ///< global number by file node
   std::vector<int> file_order_;  ///< file node by global number
   std::vector<int> file_node_;   ///< file node by local node

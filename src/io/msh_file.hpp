@@ -26,7 +26,7 @@ struct MshFile
   };
 
   std::string file;
-  std::uint64_t hash = 0;              ///< FNV-1a of its bytes
+  std::string hash;                    ///< FNV-1a of its bytes
   std::vector<Group> groups;           ///< ascending by dimension and tag
   std::vector<std::int64_t> node_tag;  ///< distinct, positive
   std::vector<double> x;               ///< 3 by node, finite, in the file's unit

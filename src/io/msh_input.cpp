@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t window_bytes = std::size_t{1} << 20;
 constexpr std::size_t longest_word = 256;  ///< [B], of a number or a section's name
-constexpr std::uint64_t hash_start = 14695981039346656037ULL, hash_prime = 1099511628211ULL;
 
 bool blank(char c)
 {
@@ -39,7 +38,7 @@ std::uint64_t size_of(const std::string& file)
 
 }  // namespace
 
-MshInput::MshInput(const std::string& file) : file_(file), hash_(hash_start), bytes_(size_of(file))
+MshInput::MshInput(const std::string& file) : file_(file), bytes_(size_of(file))
 {
   stream_.reset(std::fopen(file.c_str(), "rb"));
   if (!stream_) throw core::data_error(core::printable(file) + ": " + std::strerror(errno));
@@ -56,8 +55,7 @@ bool MshInput::fill(std::size_t bytes)
   char* const free = window_.data() + kept;
   const std::size_t got = std::fread(free, 1, window_.size() - kept, stream_.get());
   if (std::ferror(stream_.get())) throw failure(std::string("cannot be read: ") + strerror(errno));
-  for (std::size_t i = 0; i < got; ++i)
-    hash_ = (hash_ ^ static_cast<unsigned char>(free[i])) * hash_prime;
+  hash_.add({free, got});
   at_ = window_.data();
   end_ = free + got;
   return ready() >= bytes;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/failure.hpp"
+#include "core/fnv.hpp"
 
 namespace trocar::io {
 
@@ -42,7 +43,7 @@ class MshInput
   std::int64_t count(std::int64_t value, std::size_t bytes_each) const;
 
   core::Failure failure(const std::string& what) const;
-  std::uint64_t hash() const { return hash_; }  ///< FNV-1a of the bytes looked at
+  std::string hash() const { return hash_.hex(); }  ///< FNV-1a of the bytes looked at
 
  private:
   std::size_t ready() const { return static_cast<std::size_t>(end_ - at_); }
@@ -63,7 +64,8 @@ class MshInput
   std::vector<char> window_;
   const char* at_ = nullptr;
   const char* end_ = nullptr;
-  std::uint64_t hash_, bytes_ = 0, taken_ = 0;  ///< bytes of the file, and in earlier windows
+  core::Fnv1a hash_{};
+  std::uint64_t bytes_ = 0, taken_ = 0;  ///< bytes of the file, and in earlier windows
   long long line_ = 1;
   bool binary_ = false;
   std::string section_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iomanip>
-#include <sstream>
 
 #include "core/failure.hpp"
 #include "io/msh_groups.hpp"
@@ -54,9 +52,7 @@ Assembly::Assembly(const MshFile& file, double scale) : file_(file)
 {
   mesh_.file = file.file;
   mesh_.unit = scale;
-  std::ostringstream hash;
-  hash << std::hex << std::setw(16) << std::setfill('0') << file.hash;
-  mesh_.hash = hash.str();
+  mesh_.hash = file.hash;
   for (const MshFile::Block& block : file.blocks)
     if (block.type == quadratic.type[3]) order_ = quadratic;
   read_volumes(scale);

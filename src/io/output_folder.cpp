@@ -14,6 +14,7 @@
 
 #include "core/date.hpp"
 #include "core/failure.hpp"
+#include "io/checkpoint.hpp"
 
 namespace trocar::io {
 namespace {
@@ -33,14 +34,17 @@ fs::file_type type_of(const std::string& path)
   return fs::symlink_status(path, ignored).type();
 }
 
-/// step_NNNNNN.h5, with six digits or more.
-bool names_step(const std::string& name)
+/// The number in step_NNNNNN.h5, with six digits or more; -1: another name.
+long long step_of(const std::string& name)
 {
   const std::string begin = "step_", end = ".h5";
-  if (name.size() < begin.size() + 6 + end.size() || name.rfind(begin, 0) != 0) return false;
-  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return false;
+  if (name.size() < begin.size() + 6 + end.size() || name.rfind(begin, 0) != 0) return -1;
+  if (name.compare(name.size() - end.size(), end.size(), end) != 0) return -1;
   const std::string digits = name.substr(begin.size(), name.size() - begin.size() - end.size());
-  return digits.find_first_not_of("0123456789") == std::string::npos;
+  constexpr std::size_t most_digits = 18;
+  if (digits.size() > most_digits) return -1;
+  if (digits.find_first_not_of("0123456789") != std::string::npos) return -1;
+  return std::stoll(digits);
 }
 
 bool names_temporary(const std::string& name)
@@ -49,16 +53,18 @@ bool names_temporary(const std::string& name)
          name.size() == std::strlen(base::temporary_prefix) + 6;
 }
 
-/// Removes regular files of a folder whose names say they are ours.
+/// Removes regular files of a folder whose names say they are ours; gives their number.
 template <class Ours>
-void remove_ours(const std::string& folder, const Ours& ours)
+int remove_ours(const std::string& folder, const Ours& ours)
 {
   std::error_code trouble;
+  int removed = 0;
   for (fs::directory_iterator at(folder, trouble), end; !trouble && at != end;
        at.increment(trouble))
     if (ours(at->path().filename().string()) && type_of(at->path()) == fs::file_type::regular)
-      fs::remove(at->path(), trouble);
+      removed += fs::remove(at->path(), trouble) ? 1 : 0;
   if (trouble) throw core::output_error("cannot clear " + folder + ": " + trouble.message());
+  return removed;
 }
 
 base::Descriptor opened(const std::string& lock)
@@ -158,11 +164,18 @@ void OutputFolder::refuse_strangers() const
 
 void OutputFolder::clear() const
 {
+  clear_after(-1);
   remove_ours(path_, [](const std::string& name) {
-    return names_temporary(name) || name == "run.xdmf";  // it shows files that go now
+    return names_checkpoint(name) || name == "run.xdmf";  // it shows files that go now
   });
-  remove_ours(path_ + "/fields",
-              [](const std::string& name) { return names_step(name) || names_temporary(name); });
+}
+
+int OutputFolder::clear_after(long long step) const
+{
+  remove_ours(path_, names_temporary);
+  remove_ours(path_ + "/fields", names_temporary);
+  return remove_ours(path_ + "/fields",
+                     [step](const std::string& name) { return step_of(name) > step; });
 }
 
 }  // namespace trocar::io

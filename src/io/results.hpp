@@ -9,6 +9,7 @@
 #include "base/files.hpp"
 #include "base/hdf5.hpp"
 #include "core/ledger.hpp"
+#include "io/checkpoint.hpp"
 #include "io/output_folder.hpp"
 #include "io/xdmf.hpp"
 #include "mesh/mesh.hpp"
@@ -62,6 +63,11 @@ class Results
   /// `rows`: expected in the histories, which room is made for; more may come.
   Results(const std::string& folder, const mesh::Mesh& mesh, const Provenance& provenance,
           const std::vector<Series>& series, std::size_t rows = 1);
+  /// Goes on in the folder of an earlier run after the last of its rows that a checkpoint knows.
+  /// Later rows and field files are cut off. Failure (65) where run.h5 is not what the checkpoint
+  /// was made with.
+  Results(const std::string& folder, const mesh::Mesh& mesh, const std::vector<Series>& series,
+          const Checkpoint& from, const std::string& note);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -75,10 +81,13 @@ class Results
   /// A dataset of its own in run.h5.
   void write_table(const std::string& path, const std::vector<double>& values,
                    const std::string& units);
+  /// What is there until now, on the disk when it returns, for a checkpoint.
+  void tell(Checkpoint& checkpoint) const;
+  const std::string& folder() const { return folder_.path(); }
   void close();
 
-  /// What is to be said of the folder; "" mostly.
-  const std::string& remark() const { return folder_.remark(); }
+  /// What is to be said of the folder, one line each.
+  const std::vector<std::string>& remarks() const { return remarks_; }
 
  private:
   std::string run_file() const { return folder_.path() + "/run.h5"; }
@@ -86,9 +95,12 @@ class Results
   void add_series(base::H5File& file) const;
   void place(base::H5File& file);
   void make_room();
+  void take_over(const base::H5File& old, const std::vector<base::SeriesPlace>& old_places,
+                 const std::string& note);
   void write_frames();
 
   OutputFolder folder_;
+  std::vector<std::string> remarks_;
   std::vector<Series> series_;
   XdmfMesh mesh_;
   std::vector<XdmfFrame> frames_;

@@ -26,14 +26,16 @@ State TimeStepper::start()
   return std::move(result->state);
 }
 
-State TimeStepper::run(State state)
+State TimeStepper::run(State state, const Progress& from)
 {
+  at_ = from;
   const TimeSettings& time = model_->scene.time;
   const long steps = step_count(time);
-  for (long n = 1; n <= steps; ++n) {
+  for (long n = from.nominal + 1; n <= steps; ++n) {
     const bool not_whole = time.step != time.asked;  // T/N times N may miss T by round-off
     const double t = n == steps && not_whole ? time.end : static_cast<double>(n) * time.step;
     state = advance(state, {t, time.step, time.is_static});
+    if (!observer_->goes_on(state, at_)) break;
   }
   return state;
 }
@@ -54,7 +56,11 @@ State TimeStepper::advance_in_parts(const State& old, const core::TimeStep& now,
     ++at_.accepted;
     at_.nominal += ends ? 1 : 0;
     at_.whole = ends;
-    at_.seconds = model_->space.comm().max(watch.seconds());
+    core::VecX largest(2);
+    largest << watch.seconds(), observer_->asks();
+    model_->space.comm().max(largest);
+    at_.seconds = largest[0];
+    at_.asked = static_cast<int>(largest[1]);
     observer_->accepted(result->state, result->report, at_);
     return std::move(result->state);
   }

@@ -13,6 +13,7 @@ struct Progress
   long nominal = 0;      ///< steps of full length that are done
   bool whole = true;     ///< one of these has just ended; false between the parts of one
   double seconds = 0.0;  ///< wall time of this step, the longest of all ranks
+  int asked = 0;         ///< the largest of what ranks asked for
 };
 
 /// Is told how a run goes. Everything is called on every rank.
@@ -22,6 +23,10 @@ class Observer
   virtual ~Observer() = default;
   virtual void accepted(const State& state, const StepReport& report, const Progress& at) = 0;
   virtual void rejected(double t, const std::string& why) = 0;
+  /// What this rank asks for between steps, 0: nothing. Agreed by the reduction of the step's time.
+  virtual int asks() const { return 0; }
+  /// After every step of full length; false ends the run there.
+  virtual bool goes_on(const State& /*state*/, const Progress& /*at*/) { return true; }
 };
 
 /// Takes a model through time: equal steps to the end, each in halves when it is rejected, at
@@ -34,9 +39,9 @@ class TimeStepper
 
   /// The state before the first step. Failure (70) when there is none. Collective.
   State start();
-  /// From the start to the end of the scene. Failure (70) when a step is rejected however short it
-  /// is. Collective.
-  State run(State state);
+  /// From the start, or from where an earlier run had come to, to the end of the scene or where the
+  /// observer ends it. Failure (70) when a step is rejected however short it is. Collective.
+  State run(State state, const Progress& from = {});
   /// One step of full length. Failure (70) likewise. Collective.
   State advance(const State& old, const core::TimeStep& now);
 

@@ -48,9 +48,13 @@ struct FactorOrigin
   {
     v("velocity_rate", "1/s", self.rates.velocity);
     v("acceleration_rate", "1/s", self.rates.acceleration);
-    v("rotation", "1", self.at.R);
-    v("gradient", "1", self.at.G);
-    v("pressure", "Pa", self.at.p);
+    const auto by_point = [&](const char* name, const char* unit, auto& list) {
+      fem::ByPoint values{list};
+      v(name, unit, values);
+    };
+    by_point("rotation", "1", self.at.R);
+    by_point("gradient", "1", self.at.G);
+    by_point("pressure", "Pa", self.at.p);
     v("exact", "1", self.exact);
   }
 };

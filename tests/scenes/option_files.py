@@ -13,7 +13,11 @@ for path in sorted(glob.glob(os.path.join(ROOT, "options", "*.opts"))):
         card = [line for line in stream if line.startswith("#")]
     for word in ("What", "Equations", "Run", "Expect", "Seconds"):
         check(any(line.startswith("# " + word) for line in card), f"{name}: the card says '{word}'")
-    more = ["-mesh", small_block()] if name == "tight.opts" else []  # a fragment, for any scene
+    more = []
+    if name in ("tight.opts", "deterministic.opts"):  # fragments, for any scene
+        more = ["-mesh", small_block()]
+    elif name.startswith("branch_"):  # what they go on from is not there
+        more = ["-restart_from", ""]
     process = run({"-options_file": path, "-check": ""}, 2, more)
     check(process.returncode == 0, f"{name}: -check {process.stderr[-300:]}")
     with open(os.path.join(ROOT, "README.md")) as stream:

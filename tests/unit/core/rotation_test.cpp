@@ -42,6 +42,12 @@ TEST(Rotation, PolarBatchEqualsOneByOne)
     const Mat3 R = batch.get(lane);
     EXPECT_LT((R - polar_rotation(F[static_cast<std::size_t>(lane)])).norm(), 1e-9);
     EXPECT_LT((R.transpose() * R - Mat3::Identity()).norm(), 1e-13);
+    // To the last bit whatever is beside it.
+    PolarBatch others;
+    for (int k = 0; k < PolarBatch::width; ++k) others.set(k, Mat3::Identity());
+    others.set(lane, F[static_cast<std::size_t>(lane)]);
+    others.rotate();
+    EXPECT_EQ(others.get(lane), R);
   }
 }
 

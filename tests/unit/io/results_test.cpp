@@ -128,7 +128,7 @@ TEST(Results, BelongToOneRunAtATime)
       Results first("results_lock", mesh, {}, {{"time", 0, "s"}});
       first.append_history({{1.0}}, {});
       first.write_fields(0, 0.0, {}, {}, {});
-      EXPECT_TRUE(first.remark().empty());
+      EXPECT_TRUE(first.remarks().empty());
       EXPECT_THROW(Results("results_lock", mesh, {}, {}), core::Failure);
       EXPECT_EQ(files_of("results_lock"),
                 (std::vector<std::string>{"fields", "run.h5", "run.lock", "run.xdmf"}));
@@ -143,7 +143,8 @@ TEST(Results, BelongToOneRunAtATime)
     gethostname(name, sizeof name - 1);
     std::ofstream("results_lock/run.lock") << "host " << name << "\nprocess 7\nsince then\n";
     Results second("results_lock", mesh, {}, {});
-    EXPECT_NE(second.remark().find("taken over (host"), std::string::npos) << second.remark();
+    ASSERT_EQ(second.remarks().size(), 1U);
+    EXPECT_NE(second.remarks()[0].find("taken over (host"), std::string::npos);
     EXPECT_FALSE(fs::exists("results_lock/fields/step_000000.h5"));
   });
 }

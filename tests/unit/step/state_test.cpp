@@ -1,9 +1,8 @@
-#include "support/states.hpp"
-
 #include <gtest/gtest.h>
 
-#include <set>
+#include <algorithm>
 
+#include "step/archive.hpp"
 #include "support/scene.hpp"
 
 namespace trocar::step {
@@ -50,29 +49,22 @@ void both_step(Model& one, State& a, Model& other, State& b, int n)
   EXPECT_LE((a.tissue.u.value - b.tissue.u.value).norm(), 1e-10 * a.tissue.u.value.norm());
 }
 
-// Every member has a name of its own and no list is told without its size: what is put together
-// again from names and numbers says the same of itself.
+// No list is told without its size: what is put together again from the numbers says the same of
+// itself.
 TEST(State, SaysAllOfItself)
 {
-  const test::Run run = test::run([] {
-    Scene scene = busy();
-    scene.time.end = 0.6;
-    return scene;
-  }());
-  const test::TakeApart parts = test::apart(run.states.back());
-  const test::TakeApart again = test::apart(test::together(parts));
-  ASSERT_EQ(again.members.size(), parts.members.size());
-  EXPECT_EQ(again.sizes, parts.sizes);
-  std::set<std::string> names;
-  for (std::size_t i = 0; i < parts.members.size(); ++i) {
-    EXPECT_EQ(again.members[i].name, parts.members[i].name);
-    EXPECT_EQ(again.members[i].value, parts.members[i].value) << parts.members[i].name;
-    names.insert(parts.members[i].name);
-  }
-  for (const char* name :
-       {"time", "tissue/displacement", "needle/0/shaft/frame/3", "insertion/0/point/1/lambda",
-        "insertion/0/tip/hold/weight", "before/tissue/velocity", "energy/supplied"})
-    EXPECT_TRUE(names.count(name)) << name;
+  Scene scene = busy();
+  scene.time.end = 0.6;
+  Model model(scene, base::Comm(MPI_COMM_WORLD));
+  State state = initial_state(model)->state;
+  for (int n = 1; n <= 30; ++n) state = advance(model, state, {0.02 * n, 0.02, false})->state;
+  const core::Archive all = archived(state, model.space);
+  EXPECT_EQ(archived(restored(all, model.space), model.space), all);
+  if (!model.space.comm().root()) return;
+  for (const char* name : {"time [s]", "tissue/displacement [m]", "needle/0/shaft/frame/3 [1]",
+                           "insertion/0/point/1/lambda [N]", "insertion/0/tip/hold/weight [1]",
+                           "before/tissue/velocity [m/s]", "energy/supplied [J]"})
+    EXPECT_EQ(std::count(all.names.begin(), all.names.end(), name), 1) << name;
 }
 
 // A run that goes on from such numbers alone, with bodies that know nothing of the steps before, is
@@ -88,16 +80,12 @@ TEST(State, IsAllThatAStepDependsOn)
     return std::move(next->state);
   };
   for (int n = 1; n <= 20; ++n) a = step(through, a, n);
-  State b = test::together(test::apart(a));
+  State b = restored(archived(a, through.space), through.space);
   Model fresh(scene, base::Comm(MPI_COMM_WORLD));
   for (int n = 21; n <= 30; ++n) {
     a = step(through, a, n);
     b = step(fresh, b, n);
-    const test::TakeApart one = test::apart(a), other = test::apart(b);
-    ASSERT_EQ(one.members.size(), other.members.size());
-    for (std::size_t i = 0; i < one.members.size(); ++i)
-      ASSERT_EQ(one.members[i].value, other.members[i].value)
-          << one.members[i].name << " in step " << n;
+    ASSERT_EQ(archived(a, through.space), archived(b, fresh.space)) << "step " << n;
   }
   EXPECT_GT(a.insertions[0].points.size(), 2U);
 }
@@ -112,13 +100,32 @@ TEST(State, SaysWhatALaggingFactorWasMadeFrom)
   for (int n = 1; n <= 20; ++n) a = advance(through, a, {0.02 * n, 0.02, false})->state;
   ASSERT_TRUE(a.tissue.factor);
   EXPECT_GT(a.tissue.age.uses, 1);
-  State b = test::together(test::apart(a));
+  State b = restored(archived(a, through.space), through.space);
   int older = 0;
   for (int n = 21; n <= 40; ++n) {
     both_step(through, a, fresh, b, n);
     older += a.tissue.age.lags ? 1 : 0;
   }
   EXPECT_GT(older, 5);
+}
+
+// A checkpoint is a barrier: a run that drops its caches there, and another one that knows nothing
+// but what the state says, go on alike to the last bit.
+TEST(State, AndNoCachesAreABarrier)
+{
+  const Scene scene = lagging();
+  Model through(scene, base::Comm(MPI_COMM_WORLD)), fresh(scene, base::Comm(MPI_COMM_WORLD));
+  State a = initial_state(through)->state;
+  for (int n = 1; n <= 20; ++n) a = advance(through, a, {0.02 * n, 0.02, false})->state;
+  EXPECT_GT(a.tissue.age.uses, 1);
+  State b = restored(archived(a, through.space), fresh.space);
+  through.drop_caches();
+  for (int n = 21; n <= 40; ++n) {
+    const core::TimeStep now{0.02 * n, 0.02, false};
+    a = advance(through, a, now)->state;
+    b = advance(fresh, b, now)->state;
+    ASSERT_EQ(archived(a, through.space), archived(b, fresh.space)) << "step " << n;
+  }
 }
 
 // A step that was tried in between, and caches that are dropped, change nothing but what columns

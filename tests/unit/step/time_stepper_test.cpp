@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "step/archive.hpp"
 #include "support/scene.hpp"
 
 namespace trocar::step {
@@ -79,6 +80,60 @@ TEST(TimeStepper, HalvesWhatIsRejected)
   const test::Run run = test::run(finer);
   const auto& u = run.states.back().tissue.u.value;
   EXPECT_LT((end.tissue.u.value - u).norm(), 1e-6 * u.norm());
+}
+
+/// Stops a run after so many whole steps, or only looks at it there.
+struct Stopper final : Listener
+{
+  Stopper(Model& of, long after, bool ends) : model(&of), last(after), stops(ends) {}
+  int asks() const override { return progress.empty() ? 0 : 3; }
+  bool goes_on(const State& state, const Progress& at) override
+  {
+    EXPECT_TRUE(at.whole);
+    EXPECT_EQ(at.asked, 3);
+    whole.push_back(at.nominal);
+    if (at.nominal != last) return true;
+    saved = archived(state, model->space);
+    place = at;
+    model->drop_caches();
+    return !stops;
+  }
+
+  Model* model;
+  long last;
+  bool stops;
+  std::vector<long> whole;
+  core::Archive saved;
+  Progress place;
+};
+
+// A wish waits until a whole step has ended; and whether a run that has steps in halves on both
+// sides of a checkpoint goes on from there or another one does is the same to the last bit.
+TEST(TimeStepper, GoesOnFromBetweenHalvedSteps)
+{
+  Scene scene = pressed(0.02, 2);
+  scene.time.step = scene.time.asked = 0.25;
+  Model model(scene, base::Comm(MPI_COMM_WORLD));
+  Stopper once(model, 2, false);
+  TimeStepper stepper(model, once);
+  const State end = stepper.run(stepper.start());
+  EXPECT_EQ(once.whole, (std::vector<long>{1, 2, 3, 4}));
+  ASSERT_FALSE(once.refused.empty());
+  EXPECT_LT(once.refused.front(), 0.5);
+  EXPECT_GT(once.refused.back(), 0.5);
+
+  Model other(scene, base::Comm(MPI_COMM_WORLD));
+  Stopper first(other, 2, true);
+  TimeStepper until(other, first);
+  until.run(until.start());
+  EXPECT_EQ(first.times.back(), 0.5);
+  Model fresh(scene, base::Comm(MPI_COMM_WORLD));
+  Listener rest;
+  TimeStepper from(fresh, rest);
+  const State again = from.run(restored(first.saved, fresh.space), first.place);
+  EXPECT_EQ(archived(again, fresh.space), archived(end, model.space));
+  EXPECT_EQ(first.times.size() + rest.times.size(), once.times.size());
+  EXPECT_EQ(rest.progress.back().accepted, once.progress.back().accepted);
 }
 
 // What cannot be reached in halves either ends the run with its reason and the time it came to.
