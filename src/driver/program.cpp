@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "base/heartbeat.hpp"
 #include "core/failure.hpp"
 #include "driver/option_list.hpp"
 #include "driver/provenance.hpp"
@@ -67,6 +68,7 @@ int run_program(int argc, char** argv, MPI_Comm world)
   MPI_Comm_dup(world, &alarm);
   const base::Comm comm(own);
   handle_signals(comm.root());
+  const base::Heartbeat heartbeat(own, most_silence, end_for_silence);
   try {
     return static_cast<int>(run_scene(argc, argv, comm));
   } catch (const core::Failure& failure) {

@@ -53,6 +53,19 @@ void handle_signals(bool speaks)
   ::sigaction(SIGUSR1, &action, nullptr);
 }
 
+void end_for_silence(int rank, bool speaks)
+{
+  if (speaks) {
+    const std::string line =
+        "trocar: error: rank " + std::to_string(rank) + " has not run for " +
+        std::to_string(most_silence) + " s (was it stopped?), so nobody can go on; " +
+        (checkpoint_stands ? way_on.data() : "what was written until now is whole") + "\n";
+    say(line.c_str());
+  }
+  ::_exit(
+      static_cast<int>(checkpoint_stands ? core::ExitCode::checkpoint : core::ExitCode::internal));
+}
+
 void tell_of_checkpoint(const std::string& how_to_go_on)
 {
   checkpoint_stands = 0;  // no handler reads while this is written

@@ -4,6 +4,9 @@
 
 namespace trocar::driver {
 
+/// Seconds for which ranks wait for one that does not run.
+inline constexpr int most_silence = 20;
+
 /// From here on a closed terminal or pipe does not end the run (SIGPIPE). SIGHUP, SIGINT and
 /// SIGTERM end it at once: with 75 when a checkpoint stands, else with 128 + their number;
 /// everything written so far is whole at any moment. SIGUSR1 is a wish (see
@@ -13,6 +16,10 @@ void handle_signals(bool speaks);
 /// From here on a checkpoint stands: what is to be done with it is part of the line that a signal
 /// ends the run with.
 void tell_of_checkpoint(const std::string& how_to_go_on);
+
+/// Another rank no longer runs: this one ends at once, with 75 when a checkpoint stands, else
+/// with 1.
+[[noreturn]] void end_for_silence(int rank, bool speaks);
 
 /// SIGUSR1 came to this rank: a checkpoint after the step, and an end there.
 bool checkpoint_wished();

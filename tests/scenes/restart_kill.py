@@ -16,6 +16,12 @@ LONG = "--long" in sys.argv
 random.seed(2)
 
 
+def ranks_of(folder):
+    """Processes of the run that writes there, without its launcher."""
+    found = subprocess.run(["pgrep", "-f", "-x", f"{PROGRAM} .*{folder}( .*)?"], capture_output=True, text=True)
+    return [int(word) for word in found.stdout.split()]
+
+
 def wait_for(path, process):
     while not os.path.exists(path) and process.poll() is None:
         time.sleep(0.002)
@@ -31,8 +37,7 @@ for ranks in (1, 2):
     if ranks == 1:
         process.send_signal(signal.SIGUSR1)
     else:
-        children = subprocess.run(["pgrep", "-f", "-x", f"{PROGRAM} .*{folder}.*"], capture_output=True, text=True)
-        os.kill(int(children.stdout.split()[-1]), signal.SIGUSR1)
+        os.kill(ranks_of(folder)[-1], signal.SIGUSR1)
     out, error = process.communicate()
     check(process.returncode == 75 and "stopped at the checkpoint of t = " in out and "-restart " + folder in out,
           f"SIGUSR1 to a rank of {ranks}: {process.returncode} {error[-300:]!r}")
@@ -72,11 +77,9 @@ def killed_until_done(name, ranks, most):
             return process.returncode, folder, kills
         except subprocess.TimeoutExpired:
             kills += 1
-        pids = subprocess.run(["pgrep", "-f", "-x", f"{PROGRAM} .*{folder}( .*)?"], capture_output=True,
-                              text=True).stdout.split()
-        begun = time.time()
+        pids, begun = ranks_of(folder), time.time()
         if ranks > 1 and pids:  # mpirun ends the other one
-            os.kill(int(random.choice(pids)), signal.SIGKILL)
+            os.kill(random.choice(pids), signal.SIGKILL)
         else:
             os.killpg(process.pid, signal.SIGKILL)
         process.communicate(timeout=60)
@@ -92,4 +95,19 @@ for ranks, most in ((1, 12), (2, 8)) if not LONG else ((1, 150), (2, 50)):
         left -= max(kills, 1)
         check(code == 0, f"{ranks} ranks, round {round_number}: comes to its end after {kills} kills")
         check(not differences(expected, folder), f"and is the run that went through: {differences(expected, folder)[:6]}")
+
+# A rank that is stopped, not ended, does not make the other one wait for ever; one that computes for long does.
+if LONG:
+    folder = os.path.join(FOLDER, "rank_stopped")
+    process = started({**slow, "-output_dir": folder}, 2)
+    wait_for(folder + "/checkpoint.txt", process)
+    begun = time.time()
+    os.kill(ranks_of(folder)[-1], signal.SIGSTOP)
+    out, error = process.communicate(timeout=120)
+    lines = [line for line in error.splitlines() if line.startswith("trocar: error: ")]
+    check(process.returncode == 75 and len(lines) == 1 and "has not run for 20 s" in lines[0] and "-restart" in lines[0],
+          f"one rank of two is stopped: {process.returncode} {lines}")
+    check(time.time() - begun < 30, f"nobody waits above 30 s: {time.time() - begun:.0f}")
+    gone_on(slow, folder, 2)
+    check(not differences(expected, folder), "and it goes on")
 finish()
