@@ -62,13 +62,13 @@ H5Id::~H5Id()
 
 H5Id H5File::checked(std::int64_t id, H5Id::Close close, const std::string& what) const
 {
-  if (id < 0) throw core::output_error("cannot write " + path_ + " (" + what + ")");
+  if (id < 0) throw core::output_error("cannot read or write " + path_ + " (" + what + ")");
   return {id, close};
 }
 
 void H5File::check(int status, const std::string& what) const
 {
-  if (status < 0) throw core::output_error("cannot write " + path_ + " (" + what + ")");
+  if (status < 0) throw core::output_error("cannot read or write " + path_ + " (" + what + ")");
 }
 
 H5File H5File::create(const std::string& path)
@@ -187,6 +187,11 @@ void H5File::create_series(const std::string& path, std::size_t columns, std::si
                              H5Dclose, path);
   }
   attribute(path, "units", units);
+}
+
+void H5File::remove(const std::string& path)
+{
+  check(H5Ldelete(file_.get(), path.c_str(), H5P_DEFAULT), path);
 }
 
 void H5File::copy(const H5File& from, const std::string& path)

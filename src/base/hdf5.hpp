@@ -37,7 +37,8 @@ struct SeriesPlace
 
 /// One HDF5 file in memory, used from one rank: nothing is on disk before its bytes are written
 /// there, so that no disk can fail the library. Every failing call is a Failure (74) naming the
-/// file. Paths are absolute inside the file; missing groups are made on the way.
+/// file; who reads makes one of its own of it. Paths are absolute inside the file; missing groups
+/// are made on the way.
 class H5File
 {
  public:
@@ -73,6 +74,8 @@ class H5File
   void make_group(const std::string& path);
   /// Makes `path` a soft link to `target`, which need not exist yet.
   void link(const std::string& target, const std::string& path);
+  /// Takes an object out of the file.
+  void remove(const std::string& path);
   /// Copies an object with all below it from another file, and its attributes.
   void copy(const H5File& from, const std::string& path);
   /// Names of what is at the top.

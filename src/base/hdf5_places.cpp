@@ -46,7 +46,9 @@ class HeaderMessages
   void add_block(std::uint64_t at, std::uint64_t size)
   {
     constexpr unsigned continuation = 0x10;
+    constexpr std::size_t most = 10000;  // a damaged file may lead round and round
     for (const std::uint64_t end = at + size; at + 8 <= end;) {
+      if (messages_.size() > most) throw unknown();
       const unsigned type = number<std::uint16_t>(at);
       const std::uint64_t content = at + 8;
       messages_.push_back({type, content});

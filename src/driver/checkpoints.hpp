@@ -14,11 +14,12 @@ namespace trocar::driver {
 class Checkpoints
 {
  public:
-  /// Borrows all.
-  Checkpoints(step::Model& model, const Scenario& scenario, Recorder& recorder);
+  /// Borrows all. `since_start`: of the program, which -time_wall counts from.
+  Checkpoints(step::Model& model, const Scenario& scenario, Recorder& recorder,
+              const core::Stopwatch& since_start);
 
-  /// What this rank wants after the step: nothing, a checkpoint, or one and an end.
-  int asks() const;
+  /// What this rank wants after the step, by its signals and clock.
+  step::Wish wish() const;
   /// False when the run ends here. Collective.
   bool goes_on(const step::State& state, const step::Progress& at);
   /// The time at which it ended, if it did [s].

@@ -107,7 +107,8 @@ void Log::step(int number, const step::State& state, const step::StepReport& rep
     force = std::max(force, needle.base.force.norm());
   }
   const double end = scenario_->time.end;
-  const double eta = state.t > 0.0 ? watch_.seconds() * (end - state.t) / state.t : std::nan("");
+  const double done = state.t - begun_;
+  const double eta = done > 0.0 ? watch_.seconds() * (end - state.t) / done : std::nan("");
   std::printf("%6d %10.4f %11.3f %10.3f %6d %6d %10.2e %12.5f ", number, state.t, 1e3 * travel,
               1e3 * depth, report.rows, report.iterations, report.residual, force);
   if (!report.cavities.empty()) std::printf("%12.2f ", report.cavities.front().pressure);
@@ -164,7 +165,13 @@ void Log::note(const std::string& line) const
   std::fflush(stdout);
 }
 
-void Log::finish() const
+void Log::goes_on(const step::State& state)
+{
+  begun_ = state.t;
+  energy_ = state.energy;
+}
+
+void Log::finish(std::optional<double> stopped) const
 {
   if (!speaks()) return;
   std::printf("work:");
@@ -172,15 +179,20 @@ void Log::finish() const
     if (count != 0)
       std::printf(" %s %lld", std::string(name).c_str(), static_cast<long long>(count));
   if (!model_->needles.empty())
-    std::printf("\ndissipated [J]: friction %.4g, cutting %.4g", friction_, cutting_);
+    std::printf("\ndissipated%s [J]: friction %.4g, cutting %.4g",
+                begun_ > 0.0 ? " since the checkpoint" : "", friction_, cutting_);
   if (scenario_->energy)
     std::printf(
         "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "
         "+ friction %.4g + cutting %.4g + damping %.4g + rest %.2g",
         energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start,
         energy_.friction, energy_.cutting, energy_.damping, energy_.rest());
-  std::printf("\nfinished in %.1f s; results in %s\n", watch_.seconds(),
-              scenario_->output.folder.c_str());
+  const char* folder = scenario_->output.folder.c_str();
+  if (stopped)
+    std::printf("\nstopped at the checkpoint of t = %.6g s after %.1f s: -restart %s goes on\n",
+                *stopped, watch_.seconds(), folder);
+  else
+    std::printf("\nfinished in %.1f s; results in %s\n", watch_.seconds(), folder);
 }
 
 }  // namespace trocar::driver

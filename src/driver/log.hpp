@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/stopwatch.hpp"
@@ -20,7 +21,10 @@ class Log
   void set_up(double seconds) const;  ///< collective (solver description)
   void step(int number, const step::State& state, const step::StepReport& report);
   void note(const std::string& line) const;
-  void finish() const;
+  /// The run begins with the state of a checkpoint.
+  void goes_on(const step::State& state);
+  /// `stopped`: the time of the checkpoint that the run ended with before its end [s].
+  void finish(std::optional<double> stopped) const;
 
  private:
   void cavities(const cavity::Cavities& cavities) const;
@@ -31,6 +35,7 @@ class Log
   const step::Model* model_;
   const Scenario* scenario_;
   core::Stopwatch watch_;
+  double begun_ = 0.0;  ///< where this run began, at 0 or a checkpoint [s]
   int lines_ = 0;
   step::EnergyAccount energy_;             ///< of the last step
   double friction_ = 0.0, cutting_ = 0.0;  ///< dissipated so far [J]

@@ -224,8 +224,10 @@ void add_checkpoints(std::vector<OptionSpec>& t)
       not_negative("time_wall", "0", "s",
                    "wall time after which the run ends with a checkpoint and exit code 75, as it "
                    "does on SIGUSR1; 0 = none"),
-      word("restart", "", "folder of results in which a run goes on from its last checkpoint"),
-      word("restart_from", "",
+      word("restart", "none",
+           "folder of results in which a run goes on from its last checkpoint; wins over "
+           "restart_from"),
+      word("restart_from", "none",
            "folder whose last checkpoint this run begins with, its results going to output_dir; "
            "needles may move otherwise from there on"),
   };

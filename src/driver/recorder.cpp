@@ -77,6 +77,9 @@ Recorder::Recorder(const step::Model& model, const Scenario& scenario, const Inv
     const std::string& folder = output_->folder;
     if (from && !scenario.restart.branch) {
       results_.emplace(folder, scenario.mesh, series, *from, restart_note(*from, invocation));
+      io::Checkpoint renewed = *from;  // it must know the file that was written anew
+      results_->fill_in(renewed);
+      io::write_checkpoint(folder, renewed);
     } else {
       io::Provenance origin = provenance(model, invocation, options, solver);
       if (from) origin.texts.emplace_back("restart_from", restart_note(*from, invocation));
@@ -98,7 +101,7 @@ void Recorder::checkpoint(const step::State& state, const step::Progress& at)
     now.time = {state.t, time.step, time.asked, time.end, at.nominal, at.accepted};
     for (const auto& [name, count] : model_->ledger.entries())
       now.ledger.emplace_back(std::string(name), count);
-    results_->tell(now);
+    results_->fill_in(now);
     io::write_checkpoint(results_->folder(), now);
   });
 }

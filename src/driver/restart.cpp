@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -25,9 +27,11 @@ bool ends(std::string_view name, std::string_view with)
   return name.size() >= with.size() && name.substr(name.size() - with.size()) == with;
 }
 
-/// Output, tolerances, how much is computed at once and how long: nothing that the state is of.
+/// Output, tolerances, how much is computed at once and how long: nothing that the state is of, and
+/// nothing that decides which histories there are.
 bool may_always_change(std::string_view name)
 {
+  if (name == "constraint_compare" || name == "compliance_stale_error") return false;
   constexpr std::array families{"output_dir",  "output_every", "output_fields", "checkpoint_",
                                 "restart",     "time_end",     "time_wall",     "newton_tolerance",
                                 "constraint_", "compliance_",  "error_",        "locking_gauge",
@@ -48,44 +52,107 @@ bool may_branch(std::string_view name)
                                                 [&](const char* one) { return ends(name, one); });
 }
 
-bool names_file(const std::string& name)
+core::OptionType type_of(const std::string& name)
 {
-  const std::vector<core::OptionSpec>& table = option_table();
-  return std::any_of(table.begin(), table.end(), [&](const core::OptionSpec& spec) {
-    return spec.type == core::OptionType::file && core::matches(spec, name);
-  });
+  for (const core::OptionSpec& spec : option_table())
+    if (core::matches(spec, name)) return spec.type;
+  return core::OptionType::text;
 }
 
-/// The same text, number or contents.
+/// A value in the one form that equal values have: flags as one of two words, numbers as read.
+std::vector<std::string> plain(const io::Checkpoint::Option& option)
+{
+  if (type_of(option.name) == core::OptionType::flag) {
+    const std::string& value = option.value;
+    return {value == "false" || value == "0" || value == "no" ? "false" : "true"};
+  }
+  std::vector<std::string> words = core::split(option.value, ',');
+  for (std::string& word : words) {
+    char* end = nullptr;
+    const double number = std::strtod(word.c_str(), &end);
+    if (!word.empty() && *end == '\0') {
+      std::ostringstream text;
+      text << std::hexfloat << number;
+      word = text.str();
+    }
+  }
+  return words;
+}
+
+/// The same contents of a file, or the same value.
 bool same(const io::Checkpoint::Option& one, const io::Checkpoint::Option& other)
 {
-  if (one.value == other.value && one.hash == other.hash) return true;
   if (!one.hash.empty() || !other.hash.empty()) return one.hash == other.hash;
-  std::istringstream a(one.value), b(other.value);
-  double x = 0.0, y = 0.0;
-  return (a >> x) && (b >> y) && a.eof() && b.eof() && x == y;
+  return plain(one) == plain(other);
 }
 
+core::Failure refused(const io::Checkpoint::Option& was, const io::Checkpoint::Option& is)
+{
+  const auto shown = [](const std::string& value) {
+    return "'" + core::printable(value, 60) + "'";
+  };
+  const std::string how = was.value == is.value
+                              ? "; the file " + shown(is.value) + " has changed"
+                              : "; it was " + shown(was.value) + ", now it is " + shown(is.value);
+  return core::option_error(
+      "option -" + is.name + ": a run cannot go on with another one" +
+      (may_branch(is.name) ? " (-restart_from, into another folder, can)" : "") + how);
+}
+
+/// Those that both runs have come first: what only one of them has mostly follows from these.
 void refuse_other_options(const io::Checkpoint& from,
                           const std::vector<io::Checkpoint::Option>& now, bool branch)
 {
-  std::map<std::string, std::pair<io::Checkpoint::Option, io::Checkpoint::Option>> both;
-  for (const io::Checkpoint::Option& one : from.options) both[one.name].first = one;
-  for (const io::Checkpoint::Option& one : now) both[one.name].second = one;
-  for (const auto& [name, pair] : both) {
-    const auto& [was, is] = pair;
-    if (same(was, is) || may_always_change(name) || (branch && may_branch(name))) continue;
-    const bool contents = was.value == is.value;
-    const std::string with = may_branch(name) ? " (-restart_from, into another folder, can)" : "";
-    throw core::option_error("option -" + name + ": a run cannot go on with another one" + with +
-                             (contents
-                                  ? "; the file " + core::printable(is.value, 60) + " has changed"
-                                  : "; it was '" + core::printable(was.value, 60) +
-                                        "', now it is '" + core::printable(is.value, 60) + "'"));
+  const auto may_change = [&](const std::string& name) {
+    return may_always_change(name) || (branch && may_branch(name));
+  };
+  std::map<std::string, io::Checkpoint::Option> before;
+  for (const io::Checkpoint::Option& one : from.options) before[one.name] = one;
+  for (const io::Checkpoint::Option& is : now) {
+    const auto was = before.find(is.name);
+    if (was != before.end() && !same(was->second, is) && !may_change(is.name))
+      throw refused(was->second, is);
   }
+  for (const io::Checkpoint::Option& is : now)
+    if (before.erase(is.name) == 0 && !may_change(is.name)) throw refused({}, is);
+  for (const auto& [name, was] : before)
+    if (!may_change(name)) throw refused(was, {name, "", ""});
+}
+
+/// Whether two paths lead to one folder, which need not be there.
+bool one_folder(const std::string& a, const std::string& b)
+{
+  std::error_code ignored;
+  const auto resolved = [&](const std::string& path) {
+    std::filesystem::path found = std::filesystem::weakly_canonical(path, ignored);
+    if (!found.has_filename()) found = found.parent_path();
+    return found;
+  };
+  return std::filesystem::equivalent(a, b, ignored) || resolved(a) == resolved(b);
 }
 
 }  // namespace
+
+RestartSettings read_restart_settings(core::Options& options, std::string& output_folder)
+{
+  const auto folder = [&](const std::string& name) {
+    const std::string value = options.text(name);
+    if (value.empty())
+      throw core::option_error("option -" + name + ": the name of a folder is missing");
+    return value == "none" ? std::string() : value;
+  };
+  const std::string same = folder("restart"), from = folder("restart_from");
+  const bool given = options.given("output_dir");
+  if (!same.empty() && given && !one_folder(output_folder, same))
+    throw core::option_error("option -output_dir: -restart " + core::printable(same, 100) +
+                             " goes on in that folder; -restart_from starts another one");
+  if (same.empty() && !from.empty() && one_folder(output_folder, from))
+    throw core::option_error("option -restart_from: the results would replace those of " +
+                             core::printable(from, 100) + "; give another -output_dir");
+  if (same.empty()) return {from, !from.empty()};
+  output_folder = same;
+  return {same, false};
+}
 
 std::vector<io::Checkpoint::Option> options_with_hashes(
     const std::vector<core::ResolvedOption>& resolved)
@@ -93,7 +160,7 @@ std::vector<io::Checkpoint::Option> options_with_hashes(
   std::vector<io::Checkpoint::Option> options;
   for (const core::ResolvedOption& one : resolved) {
     options.push_back({one.name, one.value, ""});
-    if (one.value.empty() || one.value == "\"\"" || !names_file(one.name)) continue;
+    if (one.value.empty() || type_of(one.name) != core::OptionType::file) continue;
     std::ifstream stream(one.value, std::ios::binary);
     std::ostringstream bytes;
     bytes << stream.rdbuf();
@@ -128,13 +195,13 @@ io::Checkpoint read_restart(const Scenario& scenario,
   return from;
 }
 
-void continue_time(const io::Checkpoint::Time& from, Scenario& scenario)
+bool continue_time(const io::Checkpoint::Time& from, Scenario& scenario)
 {
   step::TimeSettings& time = scenario.time;
   const double wanted = time.end;
   if (wanted == from.end) {  // the very same steps
     time.step = from.step;
-    return;
+    return from.nominal < step::step_count(time);
   }
   constexpr double whole = 1e-6;
   const double ratio = wanted / from.step;
@@ -149,6 +216,7 @@ void continue_time(const io::Checkpoint::Time& from, Scenario& scenario)
     scenario.warnings.push_back(
         "-time_end " + core::shown(wanted) + " is no whole number of the checkpoint's steps of " +
         core::shown(from.step) + " s: the run ends at t = " + core::shown(time.end) + " s");
+  return from.nominal < step::step_count(time);
 }
 
 void refuse_jumps(const std::vector<needle::NeedleSettings>& needles, const step::State& state)

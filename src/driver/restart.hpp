@@ -8,6 +8,10 @@
 
 namespace trocar::driver {
 
+/// Reads where a run goes on from. One that goes on in a folder has that for its results. Failure
+/// (64) where a branch would write into the folder that it begins with.
+RestartSettings read_restart_settings(core::Options& options, std::string& output_folder);
+
 /// Options as they were used, with what was in the files that they name. For one rank alone.
 std::vector<io::Checkpoint::Option> options_with_hashes(
     const std::vector<core::ResolvedOption>& resolved);
@@ -20,8 +24,9 @@ io::Checkpoint read_restart(const Scenario& scenario,
                             const std::vector<core::ResolvedOption>& resolved,
                             const base::Comm& comm);
 
-/// Keeps the checkpoint's step length: a new end is met by the first step at or after it.
-void continue_time(const io::Checkpoint::Time& from, Scenario& scenario);
+/// Keeps the checkpoint's step length: a new end is met by the first step at or after it. False
+/// when no step is left.
+bool continue_time(const io::Checkpoint::Time& from, Scenario& scenario);
 
 /// A branch may move needles otherwise, but from where they are: Failure (64).
 void refuse_jumps(const std::vector<needle::NeedleSettings>& needles, const step::State& state);

@@ -1,5 +1,6 @@
 #include "driver/run.hpp"
 
+#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "driver/petsc_options.hpp"
 #include "driver/reports.hpp"
 #include "driver/restart.hpp"
+#include "driver/signals.hpp"
 #include "io/size_field.hpp"
 #include "step/archive.hpp"
 
@@ -42,7 +44,7 @@ class RunObserver final : public step::Observer
   {
     log_.note("step to t = " + core::shown(t) + " s rejected: " + why);
   }
-  int asks() const override { return checkpoints_.asks(); }
+  step::Wish wish() const override { return checkpoints_.wish(); }
   bool goes_on(const step::State& state, const step::Progress& at) override
   {
     return checkpoints_.goes_on(state, at);
@@ -55,17 +57,17 @@ class RunObserver final : public step::Observer
   long every_, steps_;
 };
 
-/// What an earlier run had come to.
-struct Place
+/// How far an earlier run had come.
+struct Reached
 {
   step::State state;
   step::Progress at;
 };
 
 /// That of a checkpoint, and a model that knows nothing but that. Collective.
-Place resume(step::Model& model, const Scenario& scenario, const io::Checkpoint& from)
+Reached resume(step::Model& model, const Scenario& scenario, const io::Checkpoint& from)
 {
-  Place place;
+  Reached place;
   try {
     place.state = step::restored(from.state, model.space);
     const step::State& state = place.state;
@@ -90,22 +92,23 @@ Place resume(step::Model& model, const Scenario& scenario, const io::Checkpoint&
   return place;
 }
 
-/// What a run is made with.
-struct Making
+/// What a run is made with. Borrows all.
+struct RunParts
 {
   step::Model& model;
   const Scenario& scenario;
   Recorder& recorder;
   Log& log;
+  const core::Stopwatch& since_start;
 };
 
 /// Every step or point of a scenario; gives the last state. Collective.
-step::State run_to_end(const Making& with, Checkpoints& checkpoints, std::optional<Place> place)
+step::State run_to_end(const RunParts& with, Checkpoints& checkpoints, std::optional<Reached> place)
 {
+  if (with.scenario.output.locking_gauge) report_locking(with.model, with.recorder, with.log);
   RunObserver observer(with.scenario, with.recorder, with.log, checkpoints);
   step::TimeStepper stepper(with.model, observer);
   if (place) return stepper.run(std::move(place->state), place->at);
-  if (with.scenario.output.locking_gauge) report_locking(with.model, with.recorder, with.log);
   step::State start = stepper.start();
   if (!with.scenario.pv) return stepper.run(std::move(start));
   post::PvSweep sweep = post::sweep_volume(with.model, *with.scenario.pv, start, observer);
@@ -114,20 +117,17 @@ step::State run_to_end(const Making& with, Checkpoints& checkpoints, std::option
 }
 
 /// From where it begins to the results' last word. Collective.
-core::ExitCode run_and_report(const Making& with, std::optional<Place> place)
+core::ExitCode run_and_report(const RunParts& with, std::optional<Reached> place)
 {
-  Checkpoints checkpoints(with.model, with.scenario, with.recorder);
+  Checkpoints checkpoints(with.model, with.scenario, with.recorder, with.since_start);
   const OutputSettings& output = with.scenario.output;
   const step::State end = run_to_end(with, checkpoints, std::move(place));
   const std::optional<double> stopped = checkpoints.stopped();
   if (output.error_estimate && !stopped)
     report_error(with.model, output, end, with.recorder, with.log);
   with.recorder.close();
-  with.log.finish();
-  if (!stopped) return core::ExitCode::ok;
-  with.log.note("stopped at the checkpoint of t = " + core::shown(*stopped) + " s: -restart " +
-                output.folder + " goes on");
-  return core::ExitCode::checkpoint;
+  with.log.finish(stopped);
+  return stopped ? core::ExitCode::checkpoint : core::ExitCode::ok;
 }
 
 void begin_log(const Log& log, const Invocation& invocation, const Scenario& scenario,
@@ -141,10 +141,22 @@ void begin_log(const Log& log, const Invocation& invocation, const Scenario& sce
              ", t = " + core::shown(from->time.now) + " s, of " + scenario.restart.folder);
 }
 
+/// The checkpoint is that of the end. A branch would be an empty folder.
+core::ExitCode nothing_left(const Scenario& scenario, const io::Checkpoint& from,
+                            const base::Comm& comm)
+{
+  const std::string what = "the checkpoint of t = " + core::shown(from.time.now) + " s in " +
+                           scenario.restart.folder + " is that of the end: no step is left";
+  if (scenario.restart.branch) throw core::option_error("option -time_end: " + what);
+  if (comm.root()) std::printf("note: %s\n", what.c_str());
+  return core::ExitCode::ok;
+}
+
 }  // namespace
 
 core::ExitCode run_scene(int argc, char** argv, const base::Comm& comm)
 {
+  const core::Stopwatch since_start;
   const Invocation invocation = read_invocation(argc, argv, comm);
   const base::PetscSession petsc(invocation.petsc);
   core::Options options(option_table(), invocation.given);
@@ -152,7 +164,7 @@ core::ExitCode run_scene(int argc, char** argv, const base::Comm& comm)
   std::optional<io::Checkpoint> from;
   if (!scenario.restart.folder.empty()) {
     from = read_restart(scenario, options.resolved(), comm);
-    continue_time(from->time, scenario);
+    if (!continue_time(from->time, scenario)) return nothing_left(scenario, *from, comm);
   }
   const core::Stopwatch watch;
   step::Model model(scenario, comm);
@@ -163,7 +175,7 @@ core::ExitCode run_scene(int argc, char** argv, const base::Comm& comm)
   step::prepare(model);
   refuse_unused(model.tissue.factor().solver().describe());
   log.set_up(watch.seconds());
-  std::optional<Place> place;
+  std::optional<Reached> place;
   if (from) place = resume(model, scenario, *from);
   if (scenario.check_only) {
     log.note("check passed: nothing was run");
@@ -172,7 +184,10 @@ core::ExitCode run_scene(int argc, char** argv, const base::Comm& comm)
   if (!scenario.output.size_field.empty())
     base::on_root(comm, [&] { io::require_size_field(scenario.output.size_field); });
   Recorder recorder(model, scenario, invocation, options.resolved(), from ? &*from : nullptr);
-  return run_and_report({model, scenario, recorder, log}, std::move(place));
+  if (from && !scenario.restart.branch)
+    checkpoint_stands_at(from->time.now, scenario.output.folder);
+  if (place) log.goes_on(place->state);
+  return run_and_report({model, scenario, recorder, log, since_start}, std::move(place));
 }
 
 }  // namespace trocar::driver

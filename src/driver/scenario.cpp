@@ -11,6 +11,7 @@
 #include "driver/compliance_options.hpp"
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
+#include "driver/restart.hpp"
 #include "driver/scenario_checks.hpp"
 #include "driver/time_options.hpp"
 #include "io/gmsh_reader.hpp"
@@ -217,30 +218,6 @@ OutputSettings read_output(Options& options)
   return output;
 }
 
-CheckpointSettings read_checkpoints(Options& options)
-{
-  return {options.integer("checkpoint_every"), options.real("checkpoint_seconds"),
-          options.real("time_wall")};
-}
-
-/// A run that goes on does so where it was.
-RestartSettings read_restarts(Options& options, OutputSettings& output)
-{
-  const std::string same = options.text("restart"), from = options.text("restart_from");
-  if (same.empty()) return {from, !from.empty()};
-  if (!from.empty())
-    throw core::option_error("option -restart_from: a run cannot go on (-restart) and branch");
-  const auto plain = [](std::string folder) {
-    while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
-    return folder;
-  };
-  if (options.given("output_dir") && plain(output.folder) != plain(same))
-    throw core::option_error("option -output_dir: -restart " + core::printable(same, 100) +
-                             " goes on in that folder; -restart_from starts another one");
-  output.folder = same;
-  return {same, false};
-}
-
 /// The needles, and the nodes they are planned to reach, when a factor can put these last.
 void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
 {
@@ -271,8 +248,9 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.laws = read_laws(options);
   scenario.compare = read_compare(options, scenario.laws);
   scenario.output = read_output(options);
-  scenario.checkpoint = read_checkpoints(options);
-  scenario.restart = read_restarts(options, scenario.output);
+  scenario.checkpoint = {options.integer("checkpoint_every"), options.real("checkpoint_seconds"),
+                         options.real("time_wall")};
+  scenario.restart = read_restart_settings(options, scenario.output.folder);
   scenario.energy = options.flag("output_energy");
   scenario.check_only = options.flag("check");
   const std::string file = options.text("mesh");

@@ -37,7 +37,9 @@ void refuse_idle(const Scenario& scenario)
   refuse(no_steps && checkpoint.every > 0, "checkpoint_every: there are no steps in time");
   refuse(no_steps && checkpoint.seconds > 0.0, "checkpoint_seconds: there are no steps in time");
   refuse(no_steps && checkpoint.wall > 0.0, "time_wall: there are no steps in time");
-  refuse(no_steps && !scenario.restart.folder.empty(), "restart: there are no steps in time");
+  refuse(no_steps && !scenario.restart.folder.empty(),
+         scenario.restart.branch ? "restart_from: there are no steps in time"
+                                 : "restart: there are no steps in time");
   refuse(scenario.insertion.radius_correction && scenario.needles.empty(),
          "insertion_radius_correction: there is no needle (-needles)");
   refuse(scenario.insertion.radius_correction && scenario.insertion.eta > 0.0,

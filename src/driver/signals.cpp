@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 #include <array>
+#include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <initializer_list>
 
@@ -11,14 +13,26 @@
 namespace trocar::driver {
 namespace {
 
-// What a signal handler may look at.
-volatile std::sig_atomic_t this_rank_speaks = 0, checkpoint_stands = 0, wished = 0;
-std::array<char, 1024> way_on{};
+// What a signal handler may look at. Of two texts one is complete while the other is written.
+volatile std::sig_atomic_t this_rank_speaks = 0, wished = 0;
+volatile std::sig_atomic_t checkpoint_text = 0;  // 1 or 2; 0: no checkpoint stands
+std::array<std::array<char, 1024>, 2> texts{};
 
 void say(const char* text)
 {
   // A signal handler may do no more about a failing write than go on.
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+}
+
+const char* what_stands()
+{
+  return checkpoint_text ? texts[static_cast<std::size_t>(checkpoint_text - 1)].data()
+                         : "what was written until now is whole";
+}
+
+int code_of_end(int otherwise)
+{
+  return checkpoint_text ? static_cast<int>(core::ExitCode::checkpoint) : otherwise;
 }
 
 extern "C" void end_with(int signal)
@@ -27,10 +41,10 @@ extern "C" void end_with(int signal)
     say("trocar: error: ended by signal ");
     say(signal == SIGHUP ? "1 (SIGHUP)" : signal == SIGINT ? "2 (SIGINT)" : "15 (SIGTERM)");
     say("; ");
-    say(checkpoint_stands ? way_on.data() : "what was written until now is whole");
+    say(what_stands());
     say("\n");
   }
-  ::_exit(checkpoint_stands ? static_cast<int>(core::ExitCode::checkpoint) : 128 + signal);
+  ::_exit(code_of_end(128 + signal));
 }
 
 extern "C" void wish(int /*signal*/)
@@ -55,25 +69,25 @@ void handle_signals(bool speaks)
 
 void end_for_silence(int rank, bool speaks)
 {
-  if (speaks) {
-    const std::string line =
-        "trocar: error: rank " + std::to_string(rank) + " has not run for " +
-        std::to_string(most_silence) + " s (was it stopped?), so nobody can go on; " +
-        (checkpoint_stands ? way_on.data() : "what was written until now is whole") + "\n";
-    say(line.c_str());
-  }
-  ::_exit(
-      static_cast<int>(checkpoint_stands ? core::ExitCode::checkpoint : core::ExitCode::internal));
+  const std::string line = "trocar: error: rank " + std::to_string(rank) + " has not run for " +
+                           std::to_string(most_silence) +
+                           " s (was it stopped?), so nobody can go on; " + what_stands() + "\n";
+  if (speaks) say(line.c_str());
+  ::_exit(code_of_end(static_cast<int>(core::ExitCode::internal)));
 }
 
-void tell_of_checkpoint(const std::string& how_to_go_on)
+void checkpoint_stands_at(double t, const std::string& folder)
 {
-  checkpoint_stands = 0;  // no handler reads while this is written
-  std::strncpy(way_on.data(), how_to_go_on.c_str(), way_on.size() - 1);
-  checkpoint_stands = 1;
+  const int free = checkpoint_text == 1 ? 2 : 1;
+  std::array<char, 1024>& text = texts[static_cast<std::size_t>(free - 1)];
+  std::snprintf(text.data(), text.size(),
+                "a checkpoint of t = %.6g s stands: -restart %s goes on from it", t,
+                folder.c_str());
+  std::atomic_signal_fence(std::memory_order_release);  // the text before its number
+  checkpoint_text = free;
 }
 
-bool checkpoint_wished()
+bool end_wished()
 {
   return wished != 0;
 }

@@ -84,36 +84,37 @@ std::vector<std::string> split(const std::string& text)
   return lines;
 }
 
-/// One frame as a line of words.
+/// One frame as a line of words between tabs, which no name has.
 std::string line_of(const XdmfFrame& frame)
 {
   std::ostringstream text;
   text.precision(17);
-  text << frame.step << ' ' << frame.time << ' ' << frame.attributes.size() << ' '
-       << frame.curves.size();
+  text << frame.step << '\t' << frame.time << '\t' << frame.attributes.size();
   for (const XdmfFrame::Attribute& one : frame.attributes)
-    text << ' ' << one.name << ' ' << one.columns << ' ' << one.cell;
-  for (const XdmfFrame::Curve& one : frame.curves) text << ' ' << one.name << ' ' << one.points;
+    text << '\t' << one.name << '\t' << one.columns << '\t' << one.cell;
+  for (const XdmfFrame::Curve& one : frame.curves) text << '\t' << one.name << '\t' << one.points;
   return text.str();
 }
 
 XdmfFrame frame_of(const std::string& line)
 {
+  std::vector<std::string> words;
   std::istringstream text(line);
+  for (std::string word; std::getline(text, word, '\t');) words.push_back(word);
+  std::size_t at = 0;
+  const auto next = [&]() -> const std::string& { return words.at(at++); };
   XdmfFrame frame{};
-  std::size_t attributes = 0, curves = 0;
-  text >> frame.step >> frame.time >> attributes >> curves;
-  for (std::size_t i = 0; i < attributes && text; ++i) {
-    XdmfFrame::Attribute one{};
-    text >> one.name >> one.columns >> one.cell;
-    frame.attributes.push_back(one);
+  frame.step = std::stoi(next());
+  frame.time = std::stod(next());
+  for (std::size_t left = std::stoul(next()); left > 0; --left) {
+    const std::string& name = next();
+    const std::size_t columns = std::stoul(next());
+    frame.attributes.push_back({name, columns, next() == "1"});
   }
-  for (std::size_t i = 0; i < curves && text; ++i) {
-    XdmfFrame::Curve one{};
-    text >> one.name >> one.points;
-    frame.curves.push_back(one);
+  while (at < words.size()) {
+    const std::string& name = next();
+    frame.curves.push_back({name, std::stoul(next())});
   }
-  if (!text) throw core::data_error("a frame of run.xdmf in it cannot be read");
   return frame;
 }
 
@@ -163,7 +164,11 @@ std::string file_of(const Checkpoint& all, const std::string& path)
   file.write_words("/run/option/hash", hashes);
   const Checkpoint::Time& time = all.time;
   file.write("/run/time", std::vector<double>{time.now, time.step, time.asked, time.end}, 0, "s");
-  file.write("/run/steps", wide({time.nominal, time.accepted, all.rows}), 0, "1");
+  file.write("/run/steps", wide({time.nominal, time.accepted}), 0, "1");
+  file.write("/run/file/size", wide({all.run.bytes, all.run.rows, all.run.room}), 0, "1");
+  file.write_words("/run/file/id_sum", {all.run.id, all.run.sum});
+  file.write("/run/file/series", wide(all.run.series), 0, "1");
+  file.write("/run/file/ledger", wide(all.run.ledger), 0, "1");
   std::vector<long long> counts;
   for (const auto& [name, count] : all.ledger) {
     ledger.push_back(name);
@@ -189,7 +194,17 @@ Checkpoint checkpoint_of(const base::H5File& file)
   const std::vector<double> time = file.read_reals("/run/time");
   const std::vector<std::int64_t> steps = file.read_integers("/run/steps");
   all.time = {time.at(0), time.at(1), time.at(2), time.at(3), steps.at(0), steps.at(1)};
-  all.rows = steps.at(2);
+  const auto size = file.read_integers("/run/file/size");
+  const auto series = file.read_integers("/run/file/series");
+  const auto places = file.read_integers("/run/file/ledger");
+  const auto words = file.read_words("/run/file/id_sum");
+  all.run = {size.at(0),
+             size.at(1),
+             size.at(2),
+             words.at(0),
+             words.at(1),
+             {series.begin(), series.end()},
+             {places.begin(), places.end()}};
   const auto counted = file.read_words("/run/ledger/name");
   const auto counts = file.read_integers("/run/ledger/count");
   for (std::size_t i = 0; i < counted.size(); ++i)
@@ -221,23 +236,42 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint)
   base::replace_file(list, text_of(manifest, checkpoint.time));
 }
 
-Checkpoint read_checkpoint(const std::string& folder)
+namespace {
+
+/// The bytes of the file that a list names, when they add up.
+std::string good_bytes(const std::string& list, const Manifest& manifest, const std::string& path)
 {
-  const std::string list = folder + "/" + manifest_name;
-  if (!std::filesystem::exists(list))
-    throw core::data_error("folder " + folder + " has no checkpoint (" + manifest_name + ")");
-  const Manifest manifest = manifest_of(list);
-  const std::string path = folder + "/" + manifest.file;
   std::string bytes = contents(path);
   if (bytes.size() != manifest.bytes)
     throw damaged(path, "has " + std::to_string(bytes.size()) + " bytes; " + list + " wants " +
                             std::to_string(manifest.bytes));
   if (core::fnv1a(bytes) != manifest.sum)
     throw damaged(path, "is damaged: its sum is not the one in " + list);
+  return bytes;
+}
+
+}  // namespace
+
+Checkpoint read_checkpoint(const std::string& folder)
+{
+  const std::string list = folder + "/" + manifest_name;
+  if (!std::filesystem::exists(list))
+    throw core::data_error("folder " + folder + " has no checkpoint (" + manifest_name + ")");
+  Manifest manifest = manifest_of(list);
+  const auto path = [&] { return folder + "/" + manifest.file; };
+  std::string bytes;
   try {
-    return checkpoint_of(base::H5File::of_bytes(path, std::move(bytes)));
+    bytes = good_bytes(list, manifest, path());
+  } catch (const core::Failure&) {  // a run that goes on may have replaced both in between
+    const std::string before = manifest.sum;
+    manifest = manifest_of(list);
+    if (manifest.sum == before) throw;
+    bytes = good_bytes(list, manifest, path());
+  }
+  try {
+    return checkpoint_of(base::H5File::of_bytes(path(), std::move(bytes)));
   } catch (const std::exception& error) {  // what adds up but is not what we write
-    throw damaged(path, std::string("is no checkpoint of this program (") + error.what() + ")");
+    throw damaged(path(), std::string("is no checkpoint of this program (") + error.what() + ")");
   }
 }
 

@@ -29,10 +29,23 @@ struct Checkpoint
     long long accepted = 0;  ///< steps that are done, parts of halved ones each for itself
   };
 
+  /// run.h5 as it was then: what of it stays as it is adds up to `sum`. What does not are the
+  /// places below and rows that come later.
+  struct RunFile
+  {
+    long long bytes = 0;  ///< its length
+    long long rows = 0;   ///< of the histories
+    long long room = 0;   ///< rows that they have room for
+    std::string id;       ///< of the run that made it
+    std::string sum;
+    std::vector<long long> series;  ///< data, row count [B] and columns of each history
+    std::vector<long long> ledger;  ///< of each count [B]
+  };
+
   std::string version;  ///< of the program that wrote it
   std::vector<Option> options;
   Time time;
-  long long rows = 0;  ///< of the histories
+  RunFile run;
   std::vector<std::pair<std::string, long long>> ledger;
   std::vector<XdmfFrame> frames;  ///< that run.xdmf shows
   core::Archive state;

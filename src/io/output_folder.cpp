@@ -53,18 +53,16 @@ bool names_temporary(const std::string& name)
          name.size() == std::strlen(base::temporary_prefix) + 6;
 }
 
-/// Removes regular files of a folder whose names say they are ours; gives their number.
+/// Removes regular files of a folder whose names say they are ours.
 template <class Ours>
-int remove_ours(const std::string& folder, const Ours& ours)
+void remove_ours(const std::string& folder, const Ours& ours)
 {
   std::error_code trouble;
-  int removed = 0;
   for (fs::directory_iterator at(folder, trouble), end; !trouble && at != end;
        at.increment(trouble))
     if (ours(at->path().filename().string()) && type_of(at->path()) == fs::file_type::regular)
-      removed += fs::remove(at->path(), trouble) ? 1 : 0;
+      fs::remove(at->path(), trouble);
   if (trouble) throw core::output_error("cannot clear " + folder + ": " + trouble.message());
-  return removed;
 }
 
 base::Descriptor opened(const std::string& lock)
@@ -148,7 +146,8 @@ void OutputFolder::refuse_strangers() const
   };
   must_be("fields", fs::file_type::directory);
   must_be("run.h5", fs::file_type::regular);
-  must_be("run.xdmf", fs::file_type::regular);
+  for (const char* name : {"run.xdmf", "checkpoint.txt", "checkpoint_a.h5", "checkpoint_b.h5"})
+    must_be(name, fs::file_type::regular);
   const auto begins = [&](const std::string& name, const std::string& bytes) {
     if (type_of(path_ + "/" + name) == fs::file_type::not_found) return;
     std::ifstream stream(path_ + "/" + name, std::ios::binary);
@@ -160,22 +159,26 @@ void OutputFolder::refuse_strangers() const
   };
   begins("run.h5", "\x89HDF\r\n\x1a\n");
   begins("run.xdmf", "<?xml");
+  begins("checkpoint.txt", "format trocar-checkpoint-");
+  begins("checkpoint_a.h5", "\x89HDF\r\n\x1a\n");
+  begins("checkpoint_b.h5", "\x89HDF\r\n\x1a\n");
 }
 
 void OutputFolder::clear() const
 {
+  // First what says that a checkpoint stands: the histories it belongs to are gone.
+  remove_ours(path_, [](const std::string& name) { return name == "checkpoint.txt"; });
   clear_after(-1);
   remove_ours(path_, [](const std::string& name) {
     return names_checkpoint(name) || name == "run.xdmf";  // it shows files that go now
   });
 }
 
-int OutputFolder::clear_after(long long step) const
+void OutputFolder::clear_after(long long step) const
 {
   remove_ours(path_, names_temporary);
   remove_ours(path_ + "/fields", names_temporary);
-  return remove_ours(path_ + "/fields",
-                     [step](const std::string& name) { return step_of(name) > step; });
+  remove_ours(path_ + "/fields", [step](const std::string& name) { return step_of(name) > step; });
 }
 
 }  // namespace trocar::io

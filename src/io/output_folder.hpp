@@ -20,9 +20,8 @@ class OutputFolder
   /// Removes field files and checkpoints of an earlier run, which would mix with ours, and what a
   /// killed one left half written.
   void clear() const;
-  /// The same of what an earlier run wrote after a step with which ours goes on; gives the number
-  /// of field files.
-  int clear_after(long long step) const;
+  /// Removes what an earlier run wrote after a step from which ours goes on.
+  void clear_after(long long step) const;
 
   const std::string& path() const { return path_; }
   /// What is to be said: a lock was taken over; "" else.

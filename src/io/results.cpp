@@ -1,13 +1,14 @@
 #include "io/results.hpp"
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "core/failure.hpp"
+#include "core/fnv.hpp"
 #include "mesh/quadratic.hpp"
 
 namespace trocar::io {
@@ -39,7 +40,14 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Proven
   base::H5File file = base::H5File::create(run_file());
   file.attribute("/", "schema", std::string("trocar-1"));
   write_mesh(file, mesh);
-  for (const auto& [name, text] : provenance.texts) file.write_text("/provenance/" + name, text);
+  core::Fnv1a id;
+  for (const auto& [name, text] : provenance.texts) {
+    file.write_text("/provenance/" + name, text);
+    id.add(text);
+  }
+  id.add(std::to_string(::getpid()));
+  id_ = id.hex();
+  file.write_text("/provenance/run_id", id_);
   for (const auto& [name, words] : provenance.tables)
     file.write_words("/provenance/" + name, words);
   add_series(file);
@@ -49,42 +57,6 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Proven
   place(file);
   folder_.clear();  // not before the new file is there: the disk may be full
   if (!folder_.remark().empty()) remarks_.push_back(folder_.remark());
-}
-
-Results::Results(const std::string& folder, const mesh::Mesh& mesh,
-                 const std::vector<Series>& series, const Checkpoint& from, const std::string& note)
-    : folder_(folder),
-      series_(series),
-      mesh_{mesh.x.size(), mesh.tets.size(), mesh.nodes_per_tet()},
-      frames_(from.frames),
-      rows_(static_cast<std::uint64_t>(from.rows))
-{
-  if (!folder_.remark().empty()) remarks_.push_back(folder_.remark());
-  run_ = base::Descriptor(run_file(), O_RDWR);
-  try {
-    const std::string bytes = run_.read_at(0, run_.size());
-    const base::H5File old = base::H5File::of_bytes(run_file(), bytes);
-    std::vector<base::SeriesPlace> places;
-    std::uint64_t there = std::numeric_limits<std::uint64_t>::max();
-    for (const Series& one : series_) {
-      const std::string path = "/history/" + one.name;
-      if (!old.has(path)) throw core::data_error("has no history " + one.name);
-      places.push_back(old.series_place(path, one.columns, bytes));
-      std::uint64_t rows = 0;
-      std::memcpy(&rows, bytes.data() + places.back().rows, sizeof rows);
-      there = std::min(there, rows);
-    }
-    if (there < rows_) throw core::data_error("ends before the checkpoint does");
-    if (there > rows_)
-      remarks_.push_back(std::to_string(there - rows_) +
-                         " steps after the checkpoint were cut off; they come again");
-    room_ = std::max<std::uint64_t>(2 * rows_, there);
-    take_over(old, places, note);
-  } catch (const core::Failure& failure) {
-    throw core::data_error(run_file() + " is not that of the checkpoint: " + failure.what());
-  }
-  folder_.clear_after(from.time.accepted);
-  write_frames();
 }
 
 Results::~Results()
@@ -143,35 +115,6 @@ void Results::make_room()
   const base::H5File old = base::H5File::of_bytes(run_file(), run_.read_at(0, run_.size()));
   room_ *= 2;
   take_over(old, places_, "");
-}
-
-/// A new file with what the old one has, its histories as long as ours, and a note where it is
-/// from.
-void Results::take_over(const base::H5File& old, const std::vector<base::SeriesPlace>& old_places,
-                        const std::string& note)
-{
-  const std::vector<base::SeriesPlace> from = old_places;  // they may be ours
-  base::H5File file = base::H5File::create(run_file());
-  file.attribute("/", "schema", std::string("trocar-1"));
-  for (const std::string& name : old.top()) {
-    const bool of_the_end = name == "error_estimate" || name == "pv_curve";
-    if (name != "history" && (note.empty() || !of_the_end)) file.copy(old, "/" + name);
-  }
-  if (!note.empty()) {
-    int before = 1;
-    while (file.has("/provenance/restart_" + std::to_string(before))) ++before;
-    file.write_text("/provenance/restart_" + std::to_string(before), note);
-  }
-  add_series(file);
-  std::string bytes = file.bytes();
-  for (std::size_t i = 0; i < series_.size(); ++i) {
-    const base::SeriesPlace to =
-        file.series_place("/history/" + series_[i].name, series_[i].columns, bytes);
-    const std::size_t length = rows_ * to.columns * sizeof(double);
-    std::memcpy(bytes.data() + to.data, run_.read_at(from[i].data, length).data(), length);
-  }
-  base::H5File filled = base::H5File::of_bytes(run_file(), std::move(bytes));
-  place(filled);
 }
 
 void Results::append_history(const std::vector<std::vector<double>>& row,
@@ -233,15 +176,9 @@ void Results::write_table(const std::string& path, const std::vector<double>& va
                           const std::string& units)
 {
   base::H5File file = base::H5File::of_bytes(run_file(), run_.read_at(0, run_.size()));
+  if (file.has(path)) file.remove(path);  // of an earlier run, with which this one goes on
   file.write(path, values, 0, units);
   place(file);
-}
-
-void Results::tell(Checkpoint& checkpoint) const
-{
-  run_.sync();
-  checkpoint.rows = static_cast<long long>(rows_);
-  checkpoint.frames = frames_;
 }
 
 void Results::close()

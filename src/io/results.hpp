@@ -64,8 +64,8 @@ class Results
   Results(const std::string& folder, const mesh::Mesh& mesh, const Provenance& provenance,
           const std::vector<Series>& series, std::size_t rows = 1);
   /// Goes on in the folder of an earlier run after the last of its rows that a checkpoint knows.
-  /// Later rows and field files are cut off. Failure (65) where run.h5 is not what the checkpoint
-  /// was made with.
+  /// Later rows and field files are cut off. Failure (65) where run.h5 is not the one that the
+  /// checkpoint was made with, (74) where it cannot be written again. `note` is kept in it.
   Results(const std::string& folder, const mesh::Mesh& mesh, const std::vector<Series>& series,
           const Checkpoint& from, const std::string& note);
   ~Results();
@@ -81,8 +81,8 @@ class Results
   /// A dataset of its own in run.h5.
   void write_table(const std::string& path, const std::vector<double>& values,
                    const std::string& units);
-  /// What is there until now, on the disk when it returns, for a checkpoint.
-  void tell(Checkpoint& checkpoint) const;
+  /// Fills in what a run needs to go on with these files; they are on the disk when it returns.
+  void fill_in(Checkpoint& checkpoint) const;
   const std::string& folder() const { return folder_.path(); }
   void close();
 
@@ -95,12 +95,14 @@ class Results
   void add_series(base::H5File& file) const;
   void place(base::H5File& file);
   void make_room();
+  std::vector<base::SeriesPlace> places_in(const base::H5File& old, const std::string& bytes);
   void take_over(const base::H5File& old, const std::vector<base::SeriesPlace>& old_places,
                  const std::string& note);
   void write_frames();
 
   OutputFolder folder_;
   std::vector<std::string> remarks_;
+  std::string id_;  ///< of the run, by which a checkpoint knows its run.h5
   std::vector<Series> series_;
   XdmfMesh mesh_;
   std::vector<XdmfFrame> frames_;

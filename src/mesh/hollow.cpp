@@ -33,6 +33,8 @@ Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
   Mesh rest;
   rest.file = mesh.file;
   rest.hash = mesh.hash;
+  rest.unit = mesh.unit;
+  rest.remarks = mesh.remarks;
   rest.volumes = mesh.volumes;
   rest.volumes.erase(rest.volumes.begin() + volume);
   number.assign(mesh.x.size(), -1);

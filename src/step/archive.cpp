@@ -226,6 +226,11 @@ void refuse_indices_of_nothing(const State& state, const fem::Space& space)
     if (anchor.weight.size() != static_cast<Eigen::Index>(anchor.node.size()))
       throw core::data_error("a place of it has not as many weights as nodes");
   };
+  for (const needle::NeedleState& one : state.needles) {
+    const std::size_t size = one.shaft.x.size();
+    if (size < 2 || one.shaft.R.size() != size || one.v.size() != size || one.w.size() != size)
+      throw core::data_error("a needle of it has no such nodes");
+  }
   for (const insertion::InsertionState& one : state.insertions) {
     among(static_cast<int>(one.phase), 0,
           static_cast<std::size_t>(insertion::Phase::withdrawn) + 1);

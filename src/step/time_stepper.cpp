@@ -57,10 +57,10 @@ State TimeStepper::advance_in_parts(const State& old, const core::TimeStep& now,
     at_.nominal += ends ? 1 : 0;
     at_.whole = ends;
     core::VecX largest(2);
-    largest << watch.seconds(), observer_->asks();
+    largest << watch.seconds(), static_cast<double>(observer_->wish());
     model_->space.comm().max(largest);
     at_.seconds = largest[0];
-    at_.asked = static_cast<int>(largest[1]);
+    at_.wish = static_cast<Wish>(largest[1]);
     observer_->accepted(result->state, result->report, at_);
     return std::move(result->state);
   }

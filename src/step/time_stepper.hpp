@@ -6,14 +6,17 @@
 
 namespace trocar::step {
 
+/// What somebody outside wants of a run between two steps; the largest of all ranks' counts.
+enum class Wish { nothing = 0, checkpoint = 1, end = 2 };
+
 /// Where a run has come to with an accepted step.
 struct Progress
 {
-  int accepted = 0;      ///< steps so far, parts of halved ones each for itself; 0: the start
-  long nominal = 0;      ///< steps of full length that are done
-  bool whole = true;     ///< one of these has just ended; false between the parts of one
-  double seconds = 0.0;  ///< wall time of this step, the longest of all ranks
-  int asked = 0;         ///< the largest of what ranks asked for
+  int accepted = 0;           ///< steps so far, parts of halved ones each for itself; 0: the start
+  long nominal = 0;           ///< steps of full length that are done
+  bool whole = true;          ///< one of these has just ended; false between the parts of one
+  double seconds = 0.0;       ///< wall time of this step, the longest of all ranks
+  Wish wish = Wish::nothing;  ///< the largest of all ranks'
 };
 
 /// Is told how a run goes. Everything is called on every rank.
@@ -23,8 +26,8 @@ class Observer
   virtual ~Observer() = default;
   virtual void accepted(const State& state, const StepReport& report, const Progress& at) = 0;
   virtual void rejected(double t, const std::string& why) = 0;
-  /// What this rank asks for between steps, 0: nothing. Agreed by the reduction of the step's time.
-  virtual int asks() const { return 0; }
+  /// What this rank wants. Agreed by the reduction of the step's time.
+  virtual Wish wish() const { return Wish::nothing; }
   /// After every step of full length; false ends the run there.
   virtual bool goes_on(const State& /*state*/, const Progress& /*at*/) { return true; }
 };

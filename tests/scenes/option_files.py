@@ -17,7 +17,7 @@ for path in sorted(glob.glob(os.path.join(ROOT, "options", "*.opts"))):
     if name in ("tight.opts", "deterministic.opts"):  # fragments, for any scene
         more = ["-mesh", small_block()]
     elif name.startswith("branch_"):  # what they go on from is not there
-        more = ["-restart_from", ""]
+        more = ["-restart_from", "none"]
     process = run({"-options_file": path, "-check": ""}, 2, more)
     check(process.returncode == 0, f"{name}: -check {process.stderr[-300:]}")
     with open(os.path.join(ROOT, "README.md")) as stream:

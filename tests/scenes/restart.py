@@ -1,16 +1,19 @@
 """A run that goes on from a checkpoint is the one that went through, to the last bit on as many ranks, to 1e-10 on
 others. With --long every shipped scene from its middle, and stopped at every step."""
 import os
+import random
+import shutil
 import sys
 
 import h5py
 import numpy as np
 
-from harness import (FOLDER, check, completed, finish, geometry, histories, ledger, options, refusal, run,
+from harness import (FOLDER, check, completed, error_lines, finish, geometry, histories, ledger, options, refusal, run,
                      structured, written)
 from restart_kit import copied, deterministic, differences, gone_on, scene, text
 
 LONG = "--long" in sys.argv
+random.seed(2)
 
 
 def from_the_middle(what, settings, every, ranks=1):
@@ -154,14 +157,68 @@ refuses("another mesh", 64, ["-mesh"], {"-mesh": structured("longer", *"--nodes 
 refuses("another step", 64, ["-time_step"], {"-time_step": "0.01"})
 refuses("an end before", 64, ["-time_end", "before the checkpoint"], {"-time_end": "0.5"})
 refuses("another folder", 64, ["-output_dir", "-restart_from"], {"-output_dir": folder + "_other"})
-refuses("both", 64, ["-restart_from"], {"-restart_from": folder})
+refuses("no name", 64, ["-restart:", "missing"], {"-restart": ""})
+refuses("its own branch", 64, ["-restart_from", "would replace"],
+        {"-restart_from": folder, "-output_dir": folder + "/../" + os.path.basename(folder)}, remove=["-restart"])
+refuses("other histories", 64, ["-constraint_compare"], {"-constraint_compare": "pgs"})
+refuses("more needles", 64, ["-needles", "'needle'"], {"-needles": "needle,other"})
+refuses("no needle", 64, ["-needles"], {"-needles": '""'}, remove=["-restart_nothing"])
+refuses("an energy account", 64, ["-output_energy"], {"-output_energy": ""})
+refuses("a branch without a step", 64, ["-time_end", "no step is left"],
+        {"-restart_from": folder, "-output_dir": folder + "_late"}, remove=["-restart"])
 refuses("none there", 65, ["has no checkpoint"], {"-restart": FOLDER, "-output_dir": FOLDER})
 refuses("a jump", 64, ["-restart_from", "would jump by"],
-        {"-restart_from": folder, "-output_dir": folder + "_jump", "-needle_velocity": "0.03"}, remove=["-restart"])
+        {"-restart_from": folder, "-output_dir": folder + "_jump", "-needle_velocity": "0.03", "-time_end": "2"}, remove=["-restart"])
 changed = written("changed.csv", "time,factor\n0,0\n2,2\n")
 refuses("other contents", 64, ["-boundary_z1_curve"], {"-boundary_z1_curve": changed})
 moved = written("moved.csv", text(curve))
+done = run({**scene_of_refusals, "-restart": folder, "-output_dir": folder})
+check(done.returncode == 0 and "no step is left" in done.stdout, f"nothing is left to do {done.stdout[-200:]}")
+longer = {"-time_end": "1.2"}
 good = run({**scene_of_refusals, "-boundary_z1_curve": moved, "-restart": folder, "-output_dir": folder,
-            "-tissue_young": "5e3", "-constraint_tolerance": "1e-10", "-quiet": ""})
+            "-tissue_young": "5e3", "-needle_direction": "1.0,0,0", "-output_energy": "0", "-constraint_tolerance": "1e-10",
+            "-quiet": "", **longer})
 check(good.returncode == 0, f"the same in another file, number or tolerance is taken {good.stderr}")
+
+# A run.h5 that is damaged, of another run, or gone: 65 or, of a bit that nobody reads, no matter; never a crash.
+kept = copied(folder, "kept")
+with open(kept + "/run.h5", "rb") as stream:
+    whole = stream.read()
+for n in range(200 if LONG else 12):
+    broken = bytearray(whole)
+    broken[random.randrange(len(broken) if n % 2 else 20000)] ^= 1 << random.randrange(8)
+    with open(kept + "/run.h5", "wb") as stream:
+        stream.write(broken)
+    process = run({**scene_of_refusals, **longer, "-restart": kept, "-output_dir": kept, "-quiet": ""})
+    if process.returncode == 0:  # a row that comes again, or its count
+        shutil.rmtree(kept)
+        kept = copied(folder, "kept")
+    check(process.returncode == 0 or (process.returncode == 65 and "run.h5" in error_lines(process)[0]),
+          f"a flipped bit of run.h5: {process.returncode} {error_lines(process)}")
+shutil.copy(completed({**scene_of_refusals, "-tissue_young": "9000", "-time_end": "2"}) + "/run.h5", kept + "/run.h5")
+process = run({**scene_of_refusals, **longer, "-restart": kept, "-output_dir": kept, "-quiet": ""})
+check(process.returncode == 65 and "run.h5" in error_lines(process)[0], f"another run's {error_lines(process)}")
+os.remove(kept + "/run.h5")
+process = run({**scene_of_refusals, **longer, "-restart": kept, "-output_dir": kept, "-quiet": ""})
+check(process.returncode == 65 and "not there" in error_lines(process)[0], f"none {error_lines(process)}")
+
+# What somebody else calls so is not touched.
+own = os.path.join(FOLDER, "own")
+os.makedirs(own)
+written("own/checkpoint.txt", "my notes")
+process = run({**short, "-output_dir": own})
+check(process.returncode == 74 and text(own + "/checkpoint.txt") == "my notes", "a stranger's checkpoint.txt stays")
+
+# A name with a blank; a branch that is stopped and goes on with the options it was given.
+named = {"-needles": "my needle", **{("-needle_my needle" + key[7:] if key.startswith("-needle_") else key): value
+                                     for key, value in short.items() if key != "-needles"}}
+folder = completed(named)
+gone_on({**named, "-time_end": "1.2"}, folder)
+root = completed(short)
+branched = {**short, "-restart_from": root, "-time_end": "1.5", "-checkpoint_every": "5"}
+through = completed(branched)
+folder = os.path.join(FOLDER, "branched")
+check(run({**branched, "-output_dir": folder, "-time_wall": "1e-9"}).returncode == 75, "a branch is stopped")
+gone_on({**branched, "-restart": folder}, folder)
+check(histories(folder)["time"].size == histories(through)["time"].size, "and goes on with the options it was given")
 finish()

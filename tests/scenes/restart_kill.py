@@ -65,6 +65,14 @@ for number in (signal.SIGTERM, signal.SIGINT):
     gone_on(slow, folder)
     check(not differences(reference, folder), f"after {number.name}: {differences(reference, folder)[:6]}")
 
+# As a run that goes on is ended before it has a checkpoint of its own: the one it goes on from stands.
+long_steps = {**slow, "-time_end": "40", "-checkpoint_every": "0"}
+process = started({**long_steps, "-restart": folder, "-output_dir": folder})
+wait_for(folder + "/fields/step_000110.h5", process)
+process.send_signal(signal.SIGTERM)
+out, error = process.communicate()
+check(process.returncode == 75 and "t = 4 s stands" in error, f"SIGTERM after -restart: {process.returncode} {error!r}")
+
 # Killed at any moment, again and again, then left to come to its end; on two ranks one of them alone.
 def killed_until_done(name, ranks, most):
     folder, kills = os.path.join(FOLDER, name), 0

@@ -26,10 +26,10 @@ Checkpoint some(int step, std::size_t size = 40)
   one.version = "a test";
   one.options = {{"tissue_young", "5000", ""}, {"mesh", "a mesh.msh", "00ff"}, {"fix", "", ""}};
   one.time = {0.1 * step, 0.1, 0.11, 3.0, step, step + 2};
-  one.rows = step + 3;
+  one.run = {1000 + step, step + 3, 64, "an id", "00ab", {1, 2, 3, 4, 5, 6}, {9, 8}};
   one.ledger = {{"steps", step}, {"solves", 1LL << 40}};
   one.frames = {
-      {0, 0.0, {{"/displacement", 3, false}, {"/von_mises", 0, true}}, {{"/needle/a", 9}}},
+      {0, 0.0, {{"/displacement", 3, false}, {"/von_mises", 0, true}}, {{"/needle/my needle", 9}}},
       {step, 0.1 * step, {}, {}}};
   one.state.names = {"time [s]", "tissue/displacement [m]", "list"};
   one.state.whole = {-1, 0, 1LL << 50};
@@ -64,7 +64,13 @@ void expect_equal(const Checkpoint& one, const Checkpoint& other)
   EXPECT_EQ(one.time.end, other.time.end);
   EXPECT_EQ(one.time.nominal, other.time.nominal);
   EXPECT_EQ(one.time.accepted, other.time.accepted);
-  EXPECT_EQ(one.rows, other.rows);
+  EXPECT_EQ(one.run.bytes, other.run.bytes);
+  EXPECT_EQ(one.run.rows, other.run.rows);
+  EXPECT_EQ(one.run.room, other.run.room);
+  EXPECT_EQ(one.run.id, other.run.id);
+  EXPECT_EQ(one.run.sum, other.run.sum);
+  EXPECT_EQ(one.run.series, other.run.series);
+  EXPECT_EQ(one.run.ledger, other.run.ledger);
   EXPECT_EQ(one.ledger, other.ledger);
   const XdmfMesh mesh{4, 1, 4};
   EXPECT_EQ(xdmf_text(mesh, one.frames), xdmf_text(mesh, other.frames));

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/failure.hpp"
+#include "mesh/hollow.hpp"
 #include "support/block.hpp"
 
 namespace trocar {
@@ -49,6 +50,25 @@ TEST(Groups, AVolumeInTheirPlaceIsAnsweredWithAllOfThem)
   mesh.surfaces.clear();
   EXPECT_NE(line([&] { mesh::surface_group(mesh, "beam"); }).find("there is none"),
             std::string::npos);
+}
+
+// What is left of a mesh without one of its volumes is in the same unit, from the same file, and has
+// the same remarks.
+TEST(Hollow, KeepsWhatTheMeshIs)
+{
+  mesh::Mesh mesh = test::block({2, 2, 2, core::Vec3(0.2, 0.2, 0.2)});
+  mesh.file = "a.msh";
+  mesh.hash = "00ff";
+  mesh.unit = 1e-3;
+  mesh.remarks = {"a remark"};
+  mesh.volumes = {"tissue", "fluid"};
+  for (std::size_t t = 0; t < mesh.region.size(); t += 2) mesh.region[t] = 1;
+  const mesh::Mesh rest = mesh::hollow(mesh, "fluid");
+  EXPECT_EQ(rest.tet_count(), mesh.tet_count() / 2);
+  EXPECT_EQ(rest.file, mesh.file);
+  EXPECT_EQ(rest.hash, mesh.hash);
+  EXPECT_EQ(rest.unit, mesh.unit);
+  EXPECT_EQ(rest.remarks, mesh.remarks);
 }
 
 }  // namespace

@@ -86,11 +86,11 @@ TEST(TimeStepper, HalvesWhatIsRejected)
 struct Stopper final : Listener
 {
   Stopper(Model& of, long after, bool ends) : model(&of), last(after), stops(ends) {}
-  int asks() const override { return progress.empty() ? 0 : 3; }
+  Wish wish() const override { return progress.empty() ? Wish::nothing : Wish::end; }
   bool goes_on(const State& state, const Progress& at) override
   {
     EXPECT_TRUE(at.whole);
-    EXPECT_EQ(at.asked, 3);
+    EXPECT_EQ(at.wish, Wish::end);
     whole.push_back(at.nominal);
     if (at.nominal != last) return true;
     saved = archived(state, model->space);
