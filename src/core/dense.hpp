@@ -4,11 +4,11 @@
 
 #include "core/math.hpp"
 
-// Dense factorisations of any size. They are compiled in dense*.cpp alone: each costs a
-// compiler several seconds, in every file that spells one out.
+// Dense factorisations of matrices of any size. Only dense*.cpp instantiate them, because each one
+// adds seconds to the compilation of a file.
 namespace trocar::core {
 
-/// A = L Lᵀ of a symmetric positive definite matrix (its lower half is read).
+/// A = L Lᵀ of a symmetric positive definite matrix; only the lower half of A is read.
 class Cholesky
 {
  public:
@@ -16,35 +16,36 @@ class Cholesky
   explicit Cholesky(MatX A) { compute(std::move(A)); }
 
   void compute(MatX A);
-  /// False when a pivot was not positive: then there is no solving.
+  /// False when a pivot was not positive; then `solve` must not be called.
   bool regular() const { return regular_; }
   /// A⁻¹ b; b and the result have the rows of A.
   VecX solve(const VecX& b) const;
   MatX solve(const MatX& B) const;
 
  private:
-  MatX L_;  ///< in its lower half
+  MatX L_;  ///< L in the lower half
   bool regular_ = false;
 };
 
-/// A = L Lᵀ in the place of A's lower half; false when a pivot is not positive.
+/// Overwrites the lower half of A with the L of A = L Lᵀ. Returns false when a pivot is not
+/// positive.
 bool cholesky_in_place(MatX& A);
 
-/// The x of least norm among those that minimise |A x - b|, for any A (complete orthogonal
+/// The x of least norm among all x that minimise |A x - b|, for any A (complete orthogonal
 /// decomposition).
 VecX least_squares(const MatX& A, const VecX& b);
 
 /// A⁻¹ b of a regular square matrix (LU with partial pivoting).
 VecX solve_square(const MatX& A, const VecX& b);
 
-/// Eigenvalues of a symmetric matrix, rising, and their unit vectors by column.
+/// Eigenvalues of a symmetric matrix, ascending, and its unit eigenvectors, one per column.
 struct SymmetricEigen
 {
   VecX values;
   MatX vectors;
 };
 SymmetricEigen symmetric_eigen(const MatX& A);
-/// The values alone.
+/// Eigenvalues of a symmetric matrix, ascending.
 VecX symmetric_eigenvalues(const MatX& A);
 Vec3 symmetric_eigenvalues(const Mat3& A);
 

@@ -1,6 +1,6 @@
 #include "core/dense.hpp"
 
-// The orthogonal factorisations, which take a compiler longest.
+// The orthogonal factorisations have a file of their own, because they take longest to compile.
 namespace trocar::core {
 
 VecX least_squares(const MatX& A, const VecX& b)

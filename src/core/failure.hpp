@@ -7,7 +7,7 @@
 
 namespace trocar::core {
 
-/// What the process returns to the shell; the numbers follow sysexits.h where it has one.
+/// Exit codes of the process. Codes above 1 are those of sysexits.h.
 enum class ExitCode : int {
   ok = 0,
   internal = 1,
@@ -18,9 +18,10 @@ enum class ExitCode : int {
   checkpoint = 75
 };
 
-/// A reason to stop, in one line for the user: what names and values of others bring into it is
-/// escaped, and cut where it is long. Thrown on every rank or, from one rank only,
-/// turned into an agreed stop by `base::on_root` or into MPI_Abort by `main`.
+/// A reason to stop the run, as one line for the user. The line may contain names and values from
+/// the user: control characters in it are escaped, and a long line is cut in its middle. Usually
+/// every rank throws it. If one rank alone throws it, `base::on_root` or `base::on_all` rethrows it
+/// on all ranks; elsewhere the driver calls MPI_Abort.
 class Failure : public std::runtime_error
 {
  public:

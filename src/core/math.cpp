@@ -15,7 +15,7 @@ Mat3 rotation_exp(const Vec3& w)
 
 Vec3 rotation_log(const Mat3& R)
 {
-  // Through the quaternion: well conditioned at 0 and at pi, where the trace formula is not.
+  // The quaternion is well-conditioned at 0 and π; the formula with the trace of R is not.
   Eigen::Quaterniond q(R);
   q.normalize();
   if (q.w() < 0.0) q.coeffs() *= -1.0;

@@ -26,7 +26,8 @@ bool blank(char c)
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
 
-/// Words of a line; quotes keep blanks and are taken off, but in names' default, "".
+/// Words of a line. Double quotes keep blanks together and are removed. Only "" stays as it is: the
+/// empty value of an option of type `names`.
 std::vector<std::string> words_of(const std::string& line, const std::string& place)
 {
   std::vector<std::string> words;

@@ -6,15 +6,15 @@
 
 namespace trocar::core {
 
-/// Why something is not there, in one line for the log.
+/// Why a value could not be computed, in one line for the log.
 struct Refusal
 {
   std::string why;
   bool unsolved = false;  ///< a linear solver stopped short of its tolerance
 };
 
-/// A value, or why there is none: what a smaller step may do better. Equal on every rank; whoever
-/// makes one has agreed on it.
+/// A value, or the reason why it could not be computed; a smaller step may succeed. All ranks hold
+/// a value or all hold the same refusal: they agree before an Outcome is made.
 template <class T>
 class Outcome
 {
@@ -35,7 +35,7 @@ class Outcome
   Refusal refusal_;
 };
 
-/// The value of what is done for its effect.
+/// Value of an Outcome that only says whether some work succeeded.
 struct Done
 {
 };

@@ -7,15 +7,15 @@
 
 namespace trocar::core {
 
-/// Rotations of the polar decompositions F = R U of `width` matrices side by side, one per lane:
-/// Newton iteration  X <- (γX + X⁻ᵀ/γ)/2, scaled as long as it has far to go (Higham 1986), which
-/// meets det F > 0 only.
+/// Rotations of the polar decompositions F = R U of `width` matrices side by side, one per lane.
+/// Newton iteration X <- (γX + X⁻ᵀ/γ)/2 (Higham 1986); γ differs from 1 only while X is far from
+/// its limit. Valid for det F > 0 only.
 class PolarBatch
 {
  public:
   static constexpr int width = 8;
   using Lanes = Eigen::Array<double, width, 1>;
-  using Matrix = std::array<Lanes, 9>;  ///< column-major
+  using Matrix = std::array<Lanes, 9>;  ///< entries, column-major
 
   Matrix& matrix() { return X_; }
   void set(int lane, const Mat3& F)
@@ -37,15 +37,17 @@ class PolarBatch
   void rotate()
   {
     constexpr int most = 50;
-    constexpr double far = 1e-2, enough = 1e-15;  // the error after it is half the change squared
+    // Limits of the squared change. The error after an iteration is half its squared change.
+    constexpr double far = 1e-2, enough = 1e-15;
     Lanes change = Lanes::Ones();
     for (int k = 0; k < most && (change > enough).any(); ++k) change = iterate(change, far, enough);
   }
 
  private:
-  /// One iteration of the lanes that have not come to rest, `before` being the square of the last
-  /// change; gives the next one. Every lane for itself: a rotation must not depend on which other
-  /// ones are beside it, which another rank may see otherwise.
+  /// One iteration. `before`: squared change of the last iteration; lanes where it is at most
+  /// `enough` stay as they are. Returns the new squared change, 0 in those lanes. Lanes do not
+  /// influence each other: which matrices share a batch differs between ranks, but their rotations
+  /// must not.
   Lanes iterate(const Lanes& before, double far, double enough)
   {
     const Matrix C = cofactors();
@@ -72,7 +74,7 @@ class PolarBatch
     return (before > enough).select(change, 0.0);
   }
 
-  /// det(X) X⁻ᵀ.
+  /// Cofactor matrix det(X) X⁻ᵀ.
   Matrix cofactors() const
   {
     const Matrix& X = X_;

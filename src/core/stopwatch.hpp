@@ -5,7 +5,7 @@
 
 namespace trocar::core {
 
-/// Wall time since construction.
+/// Wall time since construction [s].
 class Stopwatch
 {
  public:
@@ -18,7 +18,8 @@ class Stopwatch
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Processor time of this thread since construction: stands still while others have the processor.
+/// Processor time of this thread since construction [s]. It stands still while other threads use
+/// the processor.
 class ProcessorStopwatch
 {
  public:

@@ -5,10 +5,10 @@
 
 namespace trocar::core {
 
-/// How velocity and acceleration follow from the displacement at the end of a step,
-///   v = velocity (u - û),  a = acceleration (v - v̂)   [1/s],
-/// with the past û, v̂ of the time scheme. Both are 0 where there is no inertia. An operator belongs
-/// to one pair of them.
+/// Factors [1/s] that give velocity and acceleration at the end of a step from the displacement u:
+///   v = velocity (u - û),  a = acceleration (v - v̂).
+/// The time scheme extrapolates û and v̂ from the past (theory 1). Both factors are 0 in statics.
+/// The tissue operator depends on both factors.
 struct Rates
 {
   double velocity = 0.0, acceleration = 0.0;
@@ -20,15 +20,15 @@ struct Rates
 struct TimeStep
 {
   double t = 0.0;  ///< end of the step [s]
-  double h = 0.0;  ///< length [s]
+  double h = 0.0;  ///< length of the step [s]
   bool is_static = false;
   double load = 1.0;  ///< share of gravity, traction and prescribed displacement (load steps)
-  double lead = 1.0;  ///< of u in h v = lead (u - û): 1 backward Euler, 3/2 BDF2 (û: the past)
+  double lead = 1.0;  ///< factor in h v = lead (u - û): 1 backward Euler, 3/2 BDF2 with equal steps
   std::optional<double> interval{};  ///< h̄ > 0 in a = (v - v̂)/h̄ [s]; none: h
-  /// The state before the first step: it takes no time, so that nothing flows, slides or advances.
+  /// True for the state before the first step. It takes no time: nothing flows, slides or advances.
   bool start = false;
 
-  /// The equilibrium before the first step, at t = 0; `h`: of the steps to come [s].
+  /// The equilibrium before the first step, at t = 0. `h`: length of the steps to come [s].
   static TimeStep at_start(double h)
   {
     TimeStep now{0.0, h, true};

@@ -10,19 +10,22 @@
 
 namespace trocar::core {
 
-/// States describe themselves: every struct that is part of one has
-///   template <class Self, class Visitor> static void visit(Self& self, Visitor& v)
-/// (Self with or without const), which names all members, each with its unit:
-///   v("pressure", "Pa", self.pressure);
-/// One description serves comparisons, tests and whatever else must not forget a member. `Walk`
-/// goes down to what a leaf takes: numbers, flags, lists of numbers, Eigen's vectors and matrices,
-/// fields.
+// A state describes itself to a visitor. Every struct that is part of a state has a function
+//   template <class Self, class Visitor> static void visit(Self& self, Visitor& v)
+// (Self is const or not) that passes every member to v, with its name and unit:
+//   v("pressure", "Pa", self.pressure);
+// Comparisons, tests and checkpoints all use this one description, so none of them can forget a
+// member. `Walk` descends to the leaves: numbers, flags, lists of numbers, Eigen's vectors and
+// matrices, fields.
+
+/// A number, flag or enumerator.
 template <class T>
 concept Number =
     std::is_arithmetic_v<std::remove_const_t<T>> || std::is_enum_v<std::remove_const_t<T>>;
 
-/// Calls `leaf(name, unit, value)` for every value, names joined by '/'. Lists are told their size
-/// by `resize(name, list)`, optional parts whether they are there by `present(name, part)`.
+/// Calls `leaf.value(path, unit, value)` for every leaf; `path` joins the names by '/'. Before the
+/// entries of a list it calls `leaf.resize(path, list)`, before an optional part
+/// `leaf.present(path, part)`.
 template <class Leaf>
 class Walk
 {
@@ -51,7 +54,7 @@ class Walk
   }
 
  private:
-  /// What several states share is part of each.
+  /// A part that several states share is visited in each of them.
   template <class T>
   void visit_shared(const std::string& name, const char* unit, const std::shared_ptr<const T>& part)
   {

@@ -30,7 +30,8 @@ std::string_view trimmed(std::string_view text)
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-/// Bytes of the UTF-8 character at the front of a text, 0: none, or one that controls a terminal.
+/// Length of the UTF-8 character at the front of a text [bytes]. 0 if the front is no UTF-8, or a
+/// control character, line separator or change of the writing direction.
 std::size_t character(std::string_view text)
 {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -40,10 +41,11 @@ std::size_t character(std::string_view text)
   if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  if (first == 0xc2 && byte(1) < 0xa0) return 0;  // the second set of control characters
+  if (first == 0xc2 && byte(1) < 0xa0) return 0;  // control characters U+0080 to U+009F
+  // U+2028 to U+202E and U+2066 to U+2069: line separators, changes of the writing direction.
   const bool turns = first == 0xe2 && ((byte(1) == 0x80 && byte(2) >= 0xa8 && byte(2) <= 0xae) ||
                                        (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9));
-  return turns ? 0 : length;  // line ends, and what changes the direction of writing
+  return turns ? 0 : length;
 }
 
 std::string escaped(char c)

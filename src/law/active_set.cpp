@@ -14,8 +14,8 @@ double energy(const BoxQp& qp, const VecX& x)
   return x.dot(0.5 * (qp.S * x) + qp.s);
 }
 
-/// Minimiser over the free rows with the others held; the least-norm one when Cholesky meets a
-/// vanishing pivot.
+/// Minimises over the free rows, the others fixed. If Cholesky meets a vanishing pivot, the result
+/// is the minimiser of least norm.
 VecX minimise_free(const BoxQp& qp, const VecX& x, const std::vector<int>& free)
 {
   VecX held = x;
@@ -29,15 +29,16 @@ VecX minimise_free(const BoxQp& qp, const VecX& x, const std::vector<int>& free)
   return y;
 }
 
-/// One active-set iteration's state.
+/// State of the active-set iteration.
 struct Search
 {
   VecX x;
   std::vector<bool> free;
-  bool cautious = false;  ///< single changes only, after a set failed to lower the energy
+  bool cautious = false;  ///< rows change one at a time, because a set did not lower the energy
 };
 
-/// Goes from x towards the free minimiser y, which leaves the box; false when it is not a number.
+/// Moves x towards y and stops rows at their bounds; y is the minimiser over the free rows and lies
+/// outside the box. Returns false when y is not a number.
 bool stop_at_bounds(const BoxQp& qp, const VecX& y, Search& search)
 {
   const VecX& F = qp.bounds.F;
@@ -67,9 +68,10 @@ bool stop_at_bounds(const BoxQp& qp, const VecX& y, Search& search)
   return true;
 }
 
-/// Frees the bound rows whose gradient points inwards; false when there is none: x is optimal. A
-/// cautious search frees one: that with the longest way to go or, where round-off leaves no row a
-/// positive pivot, the steepest.
+/// Frees the rows on bounds where the negative gradient points inwards. Returns false when there is
+/// none: then x is optimal. A cautious search frees one row only: the row with the largest
+/// |gradient| / S_ii or, if round-off leaves no such row with S_ii > 0, the row with the largest
+/// |gradient|.
 bool release(const BoxQp& qp, double tolerance, Search& search)
 {
   const MatX& S = qp.S;
@@ -110,7 +112,7 @@ BoxSolution active_set(const BoxQp& qp, const VecX& start, int max_iterations)
   for (int i = 0; i < static_cast<int>(s.size()); ++i)
     search.free[static_cast<std::size_t>(i)] = std::abs(start[i]) < F[i];
   const double tolerance = 1e-13 * (s.cwiseAbs().maxCoeff() + (qp.S * F).cwiseAbs().maxCoeff());
-  double best = std::numeric_limits<double>::max();  // infinity minus infinity would be a NaN
+  double best = std::numeric_limits<double>::max();  // finite: infinity - infinity is NaN
   for (int k = 0; k < max_iterations; ++k) {
     std::vector<int> free;
     for (int i = 0; i < static_cast<int>(s.size()); ++i)

@@ -7,25 +7,26 @@
 
 namespace trocar::law {
 
-/// A method that solves every problem beside the one that drives the run.
+/// A solver to be benchmarked. It solves problems of the run, but the run does not use its answers.
 struct BenchmarkCase
 {
-  std::string name;  ///< as the user wrote it
+  std::string name;  ///< of the solver, as the user wrote it
   Settings settings;
 };
 
-/// What a contender needed; over several problems iterations and seconds add up.
+/// Cost and accuracy of one contender; iterations, failures and times are sums over its problems.
 struct BenchmarkResult
 {
   int iterations = 0;           ///< sweeps or factorisations
   int failures = 0;             ///< problems it did not solve
-  double residual = 0.0;        ///< worst true KKT residual [m]
-  double seconds = 0.0;         ///< of the iteration alone
-  double factor_seconds = 0.0;  ///< of the pseudo-inverse or factor of W_bb, made before it
+  double residual = 0.0;        ///< largest KKT residual [m]
+  double seconds = 0.0;         ///< wall time of the iterations alone [s]
+  double factor_seconds = 0.0;  ///< wall time of the pseudo-inverse or factor of W_bb [s]
 };
 
-/// Solves the problem with every contender and adds what it needed to `trials` (by contender;
-/// empty at first). Not converging is a figure like others.
+/// Solves the problem with every contender and adds the results to `trials` (one per contender;
+/// empty before the first call). A contender that does not converge counts as a failure; nothing is
+/// thrown.
 void compare(const Problem& problem, const std::vector<BenchmarkCase>& contenders,
              std::vector<BenchmarkResult>& trials);
 

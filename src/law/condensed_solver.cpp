@@ -13,9 +13,9 @@ namespace trocar::law {
 namespace {
 
 constexpr int most_interior_steps = 100;
-constexpr int most_warm_sets = 6;      ///< factorisations to get there from the last step's sets
-constexpr int most_newton_steps = 12;  ///< with discs
-constexpr double box_tolerance = 0.1;  ///< of the tolerance: what the box rows may leave of it
+constexpr int most_warm_sets = 6;      ///< limit of iterations of `primal_dual_active_set`
+constexpr int most_newton_steps = 12;  ///< limit of iterations of `pair_newton`
+constexpr double box_tolerance = 0.1;  ///< share of the tolerance that the interior point stops at
 
 VecX take(const BoxSolution& answer, Multipliers& result)
 {
@@ -36,8 +36,9 @@ VecX active_set_search(SchurComplement& schur, const VecX& start, const Settings
   return take(active_set(schur.qp(), start, settings.max_iterations), result);
 }
 
-/// With discs: Newton, where it gets there and is not to be left out; else the interior point, and
-/// Newton from there.
+/// Multipliers of the box rows in a problem with discs [N]. Newton's method starts from the last
+/// step, unless the user asked for the interior point. If it does not finish, the interior point
+/// gives Newton's method a new start.
 VecX discs(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
   const auto newton = [&](const VecX& start) {
@@ -52,8 +53,9 @@ VecX discs(SchurComplement& schur, const Settings& settings, Multipliers& result
   return take(newton(interior(schur, settings, result)), result);
 }
 
-/// All slipping as they did, which needs no S; or last step's sets, when they lead on; or the
-/// interior point, whose cost hardly depends on how many rows change.
+/// Multipliers of the box rows [N] by the first method that succeeds: all rows slip (needs no S);
+/// the primal-dual active set from the last step's sets; the interior point, whose cost hardly
+/// depends on how many rows change.
 VecX automatic(SchurComplement& schur, const Settings& settings, Multipliers& result)
 {
   if (const std::optional<VecX> slipping = schur.all_slipping()) return *slipping;
@@ -74,7 +76,7 @@ void check_kkt(const Problem& problem, const Settings& settings, const VecX& lam
   result.converged = result.residual <= settings.tolerance;
 }
 
-/// Worst |δ| of the bilateral rows [m]: no box solver can mend it.
+/// Largest |δ| of the bilateral rows [m]; no solver of the box rows can reduce it.
 double bilateral_residual(const Problem& problem, const VecX& lambda)
 {
   const std::vector<int> rows = split_rows(problem).bilateral;
@@ -82,7 +84,7 @@ double bilateral_residual(const Problem& problem, const VecX& lambda)
   return rows.empty() ? 0.0 : delta(rows).cwiseAbs().maxCoeff();
 }
 
-/// Gauss-Seidel from where the others have stopped.
+/// Gauss-Seidel sweeps from the multipliers of the other solvers, kept if they lower the residual.
 void sweep_on(const Problem& problem, const Settings& settings, Multipliers& result)
 {
   Problem again = problem;

@@ -4,8 +4,8 @@
 
 namespace trocar::law {
 
-/// Solves a problem of the laws zero, box and disc: rows of the law zero are eliminated, the
-/// rest is a quadratic program within bounds.
+/// Solves a problem with the laws zero, box and disc. The rows of law zero are eliminated; the
+/// other rows form a quadratic program within bounds.
 Multipliers solve_condensed(const Problem& problem, const Settings& settings);
 
 }  // namespace trocar::law

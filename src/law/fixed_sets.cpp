@@ -10,12 +10,13 @@
 namespace trocar::law {
 namespace {
 
-/// Half the width and the middle of every row's set of multipliers [N], no wider than `reach`
-/// times what holds the row alone: huge and infinite limits would drown the rest in round-off.
+/// Half width and middle of the set of every row [N]. Huge and infinite limits would drown the
+/// other rows in round-off. They are drawn in to about `reach` times the force that closes the
+/// row's gap when the row acts alone.
 struct Intervals
 {
   VecX half, middle;
-  std::vector<bool> drawn_low, drawn_high;  ///< by block: the end is not its own
+  std::vector<bool> drawn_low, drawn_high;  ///< by block: this limit was drawn in
 };
 
 Intervals intervals(const Problem& problem, const VecX& w, double reach)
@@ -43,7 +44,7 @@ Intervals intervals(const Problem& problem, const VecX& w, double reach)
   return result;
 }
 
-/// True when a multiplier lies at an end that is not its set's own.
+/// True when a multiplier lies at a limit that was drawn in.
 bool held_back(const Problem& problem, const Intervals& interval, const VecX& lambda)
 {
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
@@ -65,7 +66,7 @@ struct Chosen
   std::vector<int> rows{};
 };
 
-/// Those that something can move and whose multipliers have a choice.
+/// The blocks that something can move and whose set is more than a single point.
 Chosen choose(const Problem& problem, const VecX& w, const Intervals& interval)
 {
   Chosen chosen;
@@ -79,7 +80,7 @@ Chosen choose(const Problem& problem, const VecX& w, const Intervals& interval)
   return chosen;
 }
 
-/// The problem on these, in multipliers counted from the middles of their sets.
+/// The problem on the chosen blocks. Its multipliers are counted from the middles of their sets.
 Problem restrict(const Problem& problem, const Chosen& chosen, const Intervals& interval)
 {
   const std::vector<int>& rows = chosen.rows;
@@ -93,7 +94,7 @@ Problem restrict(const Problem& problem, const Chosen& chosen, const Intervals& 
     first += law.rows();
   }
   part.W = problem.W(rows, rows);
-  // A compliant row is a hard one in series with its compliance.
+  // W λ + g = -c λ is solved as a row without compliance, (W + c) λ + g = 0.
   if (problem.compliance.size() > 0) part.W.diagonal() += problem.compliance(rows);
   part.g = problem.g(rows);
   if (!interval.middle.isZero(0.0)) part.g += (problem.W * interval.middle)(rows);

@@ -4,9 +4,9 @@
 
 namespace trocar::law {
 
-/// Solves a problem whose sets follow no multiplier: laws zero, interval and disc. Intervals are
-/// counted from their middles, huge ones drawn in; rows that nothing can move are left out and get
-/// what their gap asks for.
+/// Solves a problem in which no set follows a multiplier (laws zero, interval and disc).
+/// Multipliers of an interval are counted from its middle, and huge intervals are narrowed. Rows
+/// that nothing can move are left out; `settle_immovable` gives them their multipliers.
 Multipliers solve_fixed_sets(const Problem& problem, const Settings& settings);
 
 }  // namespace trocar::law

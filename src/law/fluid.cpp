@@ -75,7 +75,8 @@ double FluidLaw::density(double p) const
 
 bool FluidLaw::mixes_with(const FluidLaw& other) const
 {
-  if (kind == Kind::pressure || other.kind == Kind::pressure) return true;  // a reservoir of it
+  // A cavity of given pressure is a reservoir of any fluid.
+  if (kind == Kind::pressure || other.kind == Kind::pressure) return true;
   if (!compressible() && !other.compressible()) return true;
   return kind == other.kind && bulk_modulus == other.bulk_modulus && ambient == other.ambient;
 }

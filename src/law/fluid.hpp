@@ -9,12 +9,13 @@ namespace trocar::law {
 using core::MatX;
 using core::VecX;
 
-/// Monotone cubic through points (Fritsch and Carlson 1980), straight beyond its ends.
+/// Monotone cubic spline through points (Fritsch and Carlson 1980), with straight lines beyond its
+/// ends.
 class MonotoneSpline
 {
  public:
   MonotoneSpline() = default;
-  /// x ascending, y nowhere rising; two points at least.
+  /// x ascending, y never rising; at least two points.
   MonotoneSpline(std::vector<double> x, std::vector<double> y);
 
   struct Value
@@ -27,11 +28,12 @@ class MonotoneSpline
   std::vector<double> x_, y_, slope_;
 };
 
-/// What a fluid does: the volume it takes at a pressure, which nowhere rises with the pressure.
+/// Law of a fluid: its volume V_law(p), which never rises with the pressure p (theory 9). V_f is
+/// the volume at the reference pressure p_0.
 struct FluidLaw
 {
   enum class Kind {
-    pressure,         ///< the pressure is given, any volume will do
+    pressure,         ///< the pressure is given, the volume is free
     constant_volume,  ///< V = V_f
     bulk,             ///< V = V_f exp(-(p - p_0) / K_f)
     gas,              ///< V = V_f (p_0 + p_a) / (p + p_a), isothermal
@@ -39,45 +41,47 @@ struct FluidLaw
   };
   Kind kind = Kind::constant_volume;
   double bulk_modulus = 0.0;  ///< K_f [Pa]
-  double ambient = 0.0;       ///< absolute pressure p_a where p = 0 [Pa]
+  double ambient = 0.0;       ///< p_a, the absolute pressure at p = 0 [Pa]
   MonotoneSpline table{};     ///< V [m³] over p [Pa]
 
   struct Answer
   {
     double volume;      ///< V_law(p) [m³]
     double compliance;  ///< D = -dV_law/dp >= 0 [m³/Pa]
-    double per_amount;  ///< ∂V_law/∂V_f
+    double per_amount;  ///< ∂V_law/∂V_f [1]
   };
-  /// V_law and D at p for a fluid that takes V_f = `amount` at p_0 = `reference`. A gas is
-  /// continued straight below a tenth of the ambient pressure.
+  /// V_law and D at p, for a fluid whose volume at p_0 = `reference` [Pa] is V_f = `amount` [m³].
+  /// Below an absolute pressure of p_a / 10 the law of a gas is continued by its tangent.
   Answer at(double p, double amount, double reference) const;
 
   bool compressible() const { return kind == Kind::bulk || kind == Kind::gas; }
-  /// Density at p over that at p = 0: a gas (p + p_a)/p_a, a bulk modulus e^(p/K_f), else 1. An
-  /// amount V_f at p_0 is V_f times the density there.
+  /// Density at p over that at p = 0 [1]: (p + p_a)/p_a of a gas, e^(p/K_f) with a bulk modulus,
+  /// else 1. A fluid of volume V_f at p_0 has the volume V_f · density(p_0) at p = 0.
   double density(double p) const;
-  /// Fluids of two cavities that may flow into each other.
+  /// True when a conduit may join cavities with these two fluids.
   bool mixes_with(const FluidLaw& other) const;
 };
 
-/// A way for fluid between two cavities, or one and outside (-1, where the pressure is 0). It moves
-/// amount: the flow at the pressure it comes from times the density there.
+/// A conduit between two cavities, or between a cavity and the outside (-1, where the pressure is
+/// 0). The amount that it moves is the volume which the fluid has at p = 0: the volume flow at the
+/// upstream pressure times the upstream density.
 struct Conduit
 {
   int from = -1, to = -1;
-  double conductance = 0.0;                     ///< 1/R [m³/(s Pa)]; 0: closed
-  bool valve = false;                           ///< only from `from` to `to`
-  double flow = 0.0;                            ///< prescribed flow beside it [m³/s]
-  double density_from = 1.0, density_to = 1.0;  ///< of its fluid at either end, over that at p = 0
+  double conductance = 0.0;  ///< 1/R [m³/(s Pa)]; 0: closed
+  bool valve = false;        ///< 1/R acts only while the pressure at `from` is higher
+  double flow = 0.0;         ///< prescribed flow, added to the flow through 1/R [m³/s]
+  double density_from = 1.0, density_to = 1.0;  ///< `FluidLaw::density` at either end [1]
 };
 
-/// What a network does at cavity pressures p.
+/// Flows of a network at the cavity pressures p.
 struct Flows
 {
-  VecX conduit;      ///< flow from `from` to `to`, at the pressure it comes from (conduits) [m³/s]
-  VecX inflow;       ///< of amount into every cavity, at p = 0 [m³/s]
-  MatX conductance;  ///< -∂inflow/∂p with the densities held, symmetric positive semidefinite
-                     ///< [m³/(s Pa)]
+  VecX conduit;  ///< volume flow from `from` to `to` at the upstream pressure (conduits) [m³/s]
+  VecX inflow;   ///< flow of amount into every cavity (cavities) [m³/s at p = 0]
+  /// -∂inflow/∂p at fixed densities (cavities x cavities), symmetric positive semidefinite
+  /// [m³/(s Pa)].
+  MatX conductance;
 };
 Flows network_flows(const std::vector<Conduit>& conduits, const VecX& p);
 

@@ -13,7 +13,8 @@
 namespace trocar::law {
 namespace {
 
-/// Rows first .. end-1 form one coupling point, and the discs among them by their first rows.
+/// The rows first .. end-1 of one coupling point. `boxes` and `discs` are rows counted from
+/// `first`; a disc is given by its first row.
 struct Group
 {
   Eigen::Index first, end;
@@ -36,7 +37,8 @@ std::vector<Group> groups_of(const Problem& problem)
   return groups;
 }
 
-/// The step of a disc towards its law: a gradient's, so short that it cannot overshoot.
+/// Projected gradient step for the two multipliers of a disc. `w`: trace of their block of W [m/N],
+/// at least its largest eigenvalue, so that the step cannot overshoot.
 Eigen::Vector2d on_disc(const Eigen::Vector2d& lambda, const Eigen::Vector2d& delta, double w,
                         double radius)
 {
@@ -44,9 +46,10 @@ Eigen::Vector2d on_disc(const Eigen::Vector2d& lambda, const Eigen::Vector2d& de
   return project(Law::disc(radius), Few(lambda - delta / w));
 }
 
-/// Multipliers of one group that satisfy its laws with every other row held. `residual` is δ of
-/// its rows, `F` their bounds. All rows but discs are solved as bilateral; a box row that leaves
-/// its box is put on the bound and the rest solved again. Discs follow, one after the other.
+/// Multipliers of one group that satisfy its laws, with all other rows fixed [N]. `residual`: δ of
+/// the group [m]; `F`: its bounds [N]. First all rows except discs are solved as bilateral rows.
+/// Then each box row outside its box is put on its bound, and the rest is solved again. Last, each
+/// disc takes one gradient step.
 VecX solve_group(const Problem& problem, const Group& group, const VecX& F, const VecX& lambda,
                  const VecX& residual)
 {
@@ -141,7 +144,8 @@ Multipliers solve_pgs(const Problem& problem, const Settings& settings)
 
 namespace {
 
-/// One sweep over the friction rows, each with all others held. Returns the step's norm [m].
+/// One sweep over the friction rows. Each row is solved with all others fixed; each pair takes one
+/// projected gradient step. Returns Σ w |Δλ| [m].
 double sweep(const MatX& W, const Bounds& bounds, VecX& delta, VecX& lambda)
 {
   double step = 0.0;

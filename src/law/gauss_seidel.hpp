@@ -4,12 +4,13 @@
 
 namespace trocar::law {
 
-/// Projected Gauss-Seidel over coupling points, the paper's first solver: each sweep solves every
-/// point's rows (two lateral, one axial) exactly with all others held.
+/// Projected Gauss-Seidel over coupling points, the needle paper's first solver. Each sweep solves
+/// the rows of every point (two lateral, one axial) exactly, with all other rows fixed. A disc
+/// takes one projected gradient step instead.
 Multipliers solve_pgs(const Problem& problem, const Settings& settings);
 
-/// The paper's hybrid solver (eq. 4): each iteration solves all bilateral rows at once with the
-/// spectral pseudo-inverse W_bb⁺ (relative cut 1e-10), then sweeps the friction rows.
+/// The needle paper's hybrid solver (eq. 4). Each iteration solves all bilateral rows at once with
+/// the spectral pseudo-inverse W_bb⁺ (relative cut 1e-10), then sweeps over the friction rows.
 Multipliers solve_hybrid(const Problem& problem, const Settings& settings);
 
 }  // namespace trocar::law

@@ -9,20 +9,20 @@ namespace trocar::law {
 
 VecX mobility(const Problem& problem)
 {
-  // What is prescribed has columns that are exactly zero. A relative cut would also take rows of
+  // Prescribed dofs have exactly zero columns in W. A relative threshold would also catch rows of
   // stiff bodies beside very soft ones.
   VecX w = problem.W.diagonal().cwiseMax(0.0);
   if (problem.compliance.size() > 0) w += problem.compliance;
   return w;
 }
 
-// Rows that nothing can move, W_ii = 0: their gap is what it is, and no other row feels their
-// multiplier. Where the gap opens, λ is at the end of its set on that side; where it does not,
-// between two bodies at rest, λ may be anything within and stays what it was. A row without such
-// an end, of the law zero or a push without limit, has no answer to a gap.
+// A row with W_ii = 0: no multiplier changes its gap, and its multiplier changes no other gap. If
+// its gap is not zero, λ is at the end of its set that pushes against the gap. If the gap is zero
+// (two bodies at rest), any λ of the set is a solution, and λ stays what it was. If the set has no
+// such end (law zero, a push without limit), no λ answers the gap.
 void settle_immovable(const Problem& problem, const VecX& w, double tolerance, Multipliers& result)
 {
-  constexpr double no_gap = 1e-12;  // [m], of places that are known to a part in 1e14
+  constexpr double no_gap = 1e-12;  // [m], round-off: places are known to a part in 1e14
   const double closed = std::max(tolerance, no_gap);
   for (const Block& block : problem.blocks) {
     const int n = block.law.rows();

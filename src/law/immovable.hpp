@@ -4,13 +4,13 @@
 
 namespace trocar::law {
 
-/// W_ii and compliance of every row [m/N], exactly 0 where nothing can move the row: all its dofs
-/// are prescribed, its gap is what it is.
+/// W_ii plus compliance of every row [m/N]. It is exactly 0 if nothing can move the row: all its
+/// dofs are prescribed, and its gap cannot change.
 VecX mobility(const Problem& problem);
 
-/// Gives blocks without mobility the multipliers that their gaps ask for, and says in `result`
-/// where a gap breaks the law of such a block. No set follows a multiplier here. `tolerance`: of
-/// gaps [m].
+/// Sets the multipliers of blocks without mobility `w` to those that their gaps ask for. Records in
+/// `result` the first such block whose gap violates its law. Needs sets that follow no multiplier.
+/// `tolerance`: a gap up to it counts as closed [m].
 void settle_immovable(const Problem& problem, const VecX& w, double tolerance, Multipliers& result);
 
 }  // namespace trocar::law

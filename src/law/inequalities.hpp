@@ -9,8 +9,9 @@ namespace trocar::law {
 
 using core::Vec3;
 
-/// The inequalities of bounds: c(x) >= 0 of single rows, x + F and then F - x; and of every pair
-/// that (F, x) is in the second-order cone.
+/// `Bounds` as inequalities. A single row has two: x + F >= 0 and F - x >= 0. Their values c are x
+/// + F of all single rows, then F - x of all single rows. A pair has one: (F, x_i, x_i+1) lies in
+/// the second-order cone.
 class Inequalities
 {
  public:
@@ -45,13 +46,15 @@ class Inequalities
     dc << dx(single_), -dx(single_);
     return dc;
   }
-  /// Adds what multipliers of single rows and of cones push x with.
+  /// Adds Jᵀz to f, where J is the Jacobian of all inequalities. Their multipliers are `z` for the
+  /// single rows and `cones` for the pairs.
   void add_pull(const VecX& z, const std::vector<Vec3>& cones, VecX& f) const
   {
     f(single_) += z.head(singles()) - z.tail(singles());
     for (std::size_t k = 0; k < pairs(); ++k) f.segment<2>(bounds_.pairs[k]) += cones[k].tail<2>();
   }
-  /// A with the curvature of the barriers; `ratio` = z / c.
+  /// A + Jᵀ D J, the matrix of a Newton step of the interior point. D is `ratio` = z / c for a
+  /// single row and the squared inverse of the scaling for a pair.
   MatX barrier(MatX A, const VecX& ratio, const std::vector<cone::Scaling>& scaling) const
   {
     for (Eigen::Index k = 0; k < singles(); ++k) {
@@ -64,8 +67,9 @@ class Inequalities
     }
     return A;
   }
-  /// x with the rows that tend to a bound put on it: whether a row slips is then no matter of
-  /// degree.
+  /// x clipped to the bounds. A row whose distance c from a bound is smaller than the bound's
+  /// multiplier z is put exactly on the bound: the interior point only approaches bounds, but a row
+  /// either slips or holds.
   VecX on_bounds(const VecX& x_in, const VecX& c, const VecX& z,
                  const std::vector<Vec3>& cones) const
   {

@@ -8,22 +8,22 @@
 namespace trocar::law {
 namespace {
 
-/// Point and direction: x, the values of single rows' inequalities and their multipliers, the
-/// multipliers of cones.
+/// A point of the iteration, or a direction: x, the values c of the single rows' inequalities and
+/// their multipliers z, and the multipliers of the cones.
 struct Point
 {
   VecX x, c, z;
   std::vector<Vec3> cones;
 };
 
-/// What the products c∘z are led to, of single rows and of cones.
+/// Values that a step aims at for the products c∘z, of single rows and of cones.
 struct Target
 {
   VecX single;
   std::vector<Vec3> cones;
 };
 
-/// Newton's directions at a point, with one factor.
+/// Newton directions at one point; all of them use one factor.
 class Newton
 {
  public:
@@ -63,7 +63,7 @@ class Newton
   const Inequalities& in_;
   const Point& at_;
   std::vector<cone::Scaling> scaling_;
-  VecX dual_;  ///< -(S x + s - what the multipliers push with)
+  VecX dual_;  ///< -(S x + s - Jᵀz), J the Jacobian of the inequalities
   core::Cholesky factor_;
 };
 
@@ -92,7 +92,8 @@ double complementarity(const Inequalities& in, const Point& p)
   return sum / static_cast<double>(p.c.size() + static_cast<Eigen::Index>(in.pairs()));
 }
 
-/// The least of the products, each as if it were in balance with itself.
+/// Smallest complementarity product: c z of a single row's inequality, or root(u) root(z) of a cone
+/// u with its multiplier z.
 double least_product(const Inequalities& in, const Point& p)
 {
   double least = p.c.size() > 0 ? p.c.cwiseProduct(p.z).minCoeff() : 1e300;
@@ -109,8 +110,9 @@ void move(Point& p, const Point& d, double step)
   for (std::size_t k = 0; k < p.cones.size(); ++k) p.cones[k] += step * d.cones[k];
 }
 
-/// What the products of a trial point lack to be neither much smaller nor much larger than they
-/// should be; never much less than that, or the largest of them would rule the direction.
+/// Gondzio's correction: the changes that bring the products of a trial point between 0.1 and 10
+/// times `centre`. No change is below -10 centre; otherwise the largest product would dominate the
+/// direction.
 VecX short_of(const VecX& products, double centre)
 {
   constexpr double smallest = 0.1, largest = 10.0;
@@ -118,13 +120,14 @@ VecX short_of(const VecX& products, double centre)
   return (meant - products).cwiseMax(-largest * centre);
 }
 
-/// Mehrotra: how far the affine step gets says how much to centre, and what it leaves is corrected.
-/// Gondzio (1996): with the same factor it is then corrected again for products of single rows that
-/// run away over a longer step, as long as that lengthens it.
+/// Mehrotra's direction: the length of the affine step decides how much to centre, and the
+/// second-order error of the affine step is corrected. Gondzio's corrections (1996) follow with the
+/// same factor. They bring back products of single rows that a longer step would make much larger
+/// or smaller than the others. A correction is kept if it makes the step longer.
 Point corrected_direction(const Inequalities& in, const Newton& newton, const Point& p)
 {
   constexpr int most = 3;
-  constexpr double reach = 0.3, gain = 0.03;  // of a step more, tried and asked for
+  constexpr double reach = 0.3, gain = 0.03;  // increase of the step: tried, required
   Target target{VecX::Zero(p.c.size()), std::vector<Vec3>(in.pairs(), Vec3::Zero())};
   const Point affine = newton.towards(target);
   Point trial = p;
@@ -153,8 +156,8 @@ Point corrected_direction(const Inequalities& in, const Newton& newton, const Po
   return best;
 }
 
-/// Moves as far as keeps every product from running ahead of the others: without this the step
-/// may cycle between two corners.
+/// Moves along d. The step is cut until no product is below 1e-3 of the mean product: without this
+/// limit the iteration may cycle between two corners.
 void move_centred(const Inequalities& in, Point& p, const Point& d)
 {
   constexpr double neighbourhood = 1e-3;
@@ -169,16 +172,17 @@ void move_centred(const Inequalities& in, Point& p, const Point& d)
   }
 }
 
-/// The start drawn a little into the bounds, with the multipliers its gradient asks for.
+/// First point: `start` moved to the inside of the bounds, and multipliers from the gradient there.
 Point warm_point(const Inequalities& in, const BoxQp& qp, const VecX& start)
 {
   const Bounds& bounds = qp.bounds;
-  constexpr double inwards = 0.1;  // of F, and of the mean gradient
+  // Least distance from a bound, in units of F; least multiplier, in units of the mean |gradient|.
+  constexpr double inwards = 0.1;
   Point p{Bounds{(1.0 - inwards) * bounds.F, bounds.pairs}.clip(start), {}, {}, {}};
   p.c = in.values(p.x);
   const VecX gradient = qp.gradient(p.x);
   const double least = inwards * gradient.cwiseAbs().mean() + 1e-12;
-  // c has the slopes ±1: what pulls a row back is the gradient's part along it.
+  // The slopes of c are ±1. A multiplier is therefore the positive part of ± the gradient.
   p.z = in.change(gradient).cwiseMax(0.0).array() + least;
   for (int i : bounds.pairs) {
     const Eigen::Vector2d pull = gradient.segment<2>(i);

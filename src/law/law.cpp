@@ -6,7 +6,7 @@
 namespace trocar::law {
 namespace {
 
-/// The interval of a law of one row.
+/// Limits of λ in a law of one row [N].
 struct Ends
 {
   double lower, upper;
@@ -19,8 +19,8 @@ Ends ends_of(const Law& law, double leader)
   return {-bound, bound};
 }
 
-/// Place in the half section of a cone, 0 <= n <= upper and 0 <= s <= min(μ n, shear), and the unit
-/// direction of the edge it lies on; zero at a corner.
+/// A point (n, s) = (λ_n, |λ_t|) of the half section of a cone [N]: 0 <= n <= upper, 0 <= s <=
+/// min(μ n, shear). `along`: unit direction of the edge that the point lies on, zero at a corner.
 struct Section
 {
   double n, s;
@@ -59,7 +59,7 @@ Section nearest(const Law& law, double n, double s)
   return best;
 }
 
-/// D of a length |x| drawn to `radius` with its direction kept.
+/// Derivative of the map x -> radius x / |x|.
 FewSquare drawn_derivative(const Few& x, double radius)
 {
   const double length = x.norm();
@@ -148,7 +148,8 @@ double residual(const Law& law, const Few& lambda, const Few& delta, double w, d
 {
   if (law.set == Law::Set::zero) return std::abs(delta[0]);
   Few meant = delta;
-  // Below its cap a cone's slip would open the gap if it were normal to K as a whole.
+  // Slip must not open the gap, so μ|δ_t| is added to δ_n (De Saxcé and Feng 1998). At the cap
+  // `shear` the limit does not depend on λ_n, and no term is needed.
   if (law.set == Law::Set::cone && law.friction * lambda[0] <= law.shear)
     meant[0] += law.friction * delta.tail<2>().norm();
   return w * (lambda - project(law, lambda - meant / w, leader)).norm();

@@ -10,28 +10,31 @@ namespace trocar::law {
 using core::MatX;
 using core::VecX;
 
-/// Values of up to three rows, never on the heap.
+/// Vector and matrix for the rows of one block (at most three); they never use the heap.
 using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
 using FewSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 
-/// The law of one to three rows: the convex set K that their multipliers may lie in [N]. Within K
-/// the rows hold, δ = 0; on its border they give way outwards, -δ in the normal cone of K at λ.
-/// Of a cone (λ_n, λ_t) the slip alone lies in the normal cone: δ_t opposes λ_t and δ_n = 0 while
-/// the bodies touch (Coulomb); with De Saxcé's δ_n + μ|δ_t| it is the same statement for K.
+/// The law of a block of one to three rows: the convex set K that their multipliers must lie in
+/// [N]. Where λ is inside K, the rows hold: δ = 0. Where λ is on the border of K, the rows may give
+/// way: -δ lies in the normal cone of K at λ.
+/// Coulomb's cone is the exception: while the bodies touch, δ_n = 0, and only the slip δ_t is
+/// normal to the border, opposite to λ_t. With δ_n + μ|δ_t| in place of δ_n the normal-cone
+/// condition holds for this K too (De Saxcé and Feng 1998).
 struct Law
 {
   enum class Set : std::uint8_t {
     zero,      ///< δ = 0, λ is free (K is the whole line)
     interval,  ///< lower <= λ <= upper: friction, or contact that yields at `upper`
     follower,  ///< |λ| <= friction · max(λ_leader, 0)
-    disc,      ///< |λ| <= upper of two rows
-    cone  ///< 0 <= λ_n <= upper, |λ_t| <= min(friction · λ_n, shear) of three rows (n, t1, t2)
+    disc,      ///< |λ| <= upper, two rows
+    cone  ///< 0 <= λ_n <= upper, |λ_t| <= min(friction · λ_n, shear), three rows (n, t1, t2)
   };
   Set set = Set::zero;
-  double lower = 0.0, upper = std::numeric_limits<double>::infinity();  ///< [N]
-  double friction = 0.0;                                                ///< coefficient
-  double shear = std::numeric_limits<double>::infinity();               ///< a cone's cap [N]
-  int leader = -1;  ///< row of the problem that a follower follows
+  /// Limits of λ, see `Set` [N].
+  double lower = 0.0, upper = std::numeric_limits<double>::infinity();
+  double friction = 0.0;                                   ///< coefficient of friction
+  double shear = std::numeric_limits<double>::infinity();  ///< limit of |λ_t| of a cone [N]
+  int leader = -1;  ///< of a follower: row of the problem whose multiplier is λ_leader
 
   static Law zero() { return {}; }
   static Law interval(double lower, double upper) { return {Set::interval, lower, upper}; }
@@ -42,12 +45,12 @@ struct Law
     return {.set = Set::follower, .friction = friction, .leader = leader};
   }
   static Law disc(double radius) { return {Set::disc, 0.0, radius}; }
-  /// Coulomb's cone, its normal force at most `upper`.
+  /// Coulomb's cone; the normal force is at most `upper` [N].
   static Law cone(double friction, double upper = std::numeric_limits<double>::infinity())
   {
     return {.set = Set::cone, .upper = upper, .friction = friction};
   }
-  /// Its intersection with a disc: the shear force is at most `shear` (Tresca).
+  /// Coulomb's cone with a shear force of at most `shear` [N] (Tresca).
   static Law capped_cone(double friction, double shear)
   {
     return {.set = Set::cone, .friction = friction, .shear = shear};
@@ -57,18 +60,19 @@ struct Law
   bool operator==(const Law&) const = default;
 };
 
-/// The point of K next to x [N]. `leader` is the multiplier that a follower follows.
+/// The point of K nearest to x [N]. `leader`: λ_leader of a follower [N].
 Few project(const Law& law, const Few& x, double leader = 0.0);
 
-/// ∂ project / ∂x (rows x rows), symmetric, 0 <= D <= 1; where it jumps, that of one side.
+/// ∂ project / ∂x (rows x rows): symmetric, with eigenvalues between 0 and 1. Where the derivative
+/// is discontinuous, the result is its value on one side.
 FewSquare projection_derivative(const Law& law, const Few& x, double leader = 0.0);
 
-/// What rows that nothing can move bear against their gap: the end of K opposite to it, of a cone
-/// in the normal direction first [N]. Infinite where K is.
+/// Multipliers of rows that nothing can move (W_ii = 0): the end of K that pushes against their gap
+/// [N]. For a cone, λ_n is chosen first and λ_t within its limit. Infinite where K has no end.
 Few resisting(const Law& law, const Few& gap, double leader = 0.0);
 
-/// How far (λ, δ) is from the law [m]: |λ - P_K(λ - δ/w)| w, zero exactly where it is met. `w` > 0
-/// is the mean compliance of the rows [m/N].
+/// Residual of the law [m]: |λ - P_K(λ - δ/w)| w with P_K = `project`. It is zero exactly where (λ,
+/// δ) obeys the law. `w` > 0: mean compliance of the rows [m/N].
 double residual(const Law& law, const Few& lambda, const Few& delta, double w, double leader = 0.0);
 
 }  // namespace trocar::law

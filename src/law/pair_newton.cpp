@@ -8,15 +8,17 @@
 namespace trocar::law {
 namespace {
 
-/// What a row or pair does: 0 free, else on its bound; a pair that slips has its two rows turned
-/// into the direction of its force, which is held, and the one across, which is free.
+/// State of every row and pair: free, or on its bound. A pair that slips is turned: its first row
+/// becomes the direction along its force, which is held, its second row the direction across, which
+/// is free.
 struct Slip
 {
-  std::vector<signed char> state;      ///< by row: -1, 0, 1; pairs 1 in their first row
-  std::vector<Eigen::Vector2d> along;  ///< by pair: unit direction of y, zero where it sticks
-  VecX target;                         ///< of held rows, in turned directions (rows) [N]
-  VecX stiffness;                      ///< more of a free row, in turned directions [m/N]
-  VecX pull;                           ///< factor of a free row's gradient
+  /// By row: 0 free, -1 or 1 on that bound. A pair that slips has 1 in its first row.
+  std::vector<signed char> state;
+  std::vector<Eigen::Vector2d> along;  ///< by pair: unit vector of its force, zero where it sticks
+  VecX target;                         ///< values of held rows, in turned directions (rows) [N]
+  VecX stiffness;                      ///< added to the diagonal of free rows (rows, turned) [m/N]
+  VecX pull;                           ///< factor on the gradient of free rows (rows, turned)
 };
 
 Slip slip_at(const Bounds& bounds, const VecX& y, const VecX& w)
@@ -33,7 +35,7 @@ Slip slip_at(const Bounds& bounds, const VecX& y, const VecX& w)
   for (std::size_t k = 0; k < bounds.pairs.size(); ++k) {
     const int i = bounds.pairs[k];
     const double length = y.segment<2>(i).norm(), F = bounds.F[i];
-    if (!(F > 0.0)) {  // two rows that bear nothing
+    if (!(F > 0.0)) {  // both multipliers are zero
       slip.state[static_cast<std::size_t>(i)] = slip.state[static_cast<std::size_t>(i) + 1] = 1;
       continue;
     }
@@ -47,7 +49,7 @@ Slip slip_at(const Bounds& bounds, const VecX& y, const VecX& w)
   return slip;
 }
 
-/// Rows (i, i+1) of the pairs that slip, turned into along and across.
+/// Turns the rows (i, i+1) of A into along and across, for every pair that slips.
 void turn_rows(const Bounds& bounds, const Slip& slip, MatX& A)
 {
   for (std::size_t k = 0; k < bounds.pairs.size(); ++k) {
@@ -80,7 +82,7 @@ VecX turned_back(const Bounds& bounds, const Slip& slip, VecX x)
   return x;
 }
 
-/// Newton's step from x with these states; false when a pivot is not positive.
+/// Newton's step from x in the given states. Returns false when a pivot is not positive.
 bool step(const MatX& H, const VecX& gradient, const Bounds& bounds, const Slip& slip, VecX& x)
 {
   MatX A = H;
@@ -136,7 +138,7 @@ BoxSolution pair_newton(const BoxQp& qp, const VecX& start, double tolerance, in
     last = slip.state;
     ++result.factorisations;
     if (!step(H, gradient, bounds, slip, x) || !x.allFinite()) break;
-    // On the bounds and no hair beside them: whether a pair slips is then no matter of degree.
+    // Clipped, so that a row or pair that slips lies exactly on its bound.
     const VecX on = bounds.clip(x);
     if (box_residual(qp, on) > 0.1 * tolerance) continue;
     result.finished = true;

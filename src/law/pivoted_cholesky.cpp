@@ -12,8 +12,8 @@ namespace trocar::law {
 using core::MatX;
 using core::VecX;
 
-// Right-looking by panels: within a panel a column is made from its own panel alone, what is left
-// is updated once per panel by one matrix product.
+// Right-looking, in panels of columns. A column is updated with the columns of its own panel only.
+// After each panel, one matrix product updates the rest of the matrix.
 PivotedCholesky::PivotedCholesky(MatX matrix, double scale, double cut)
     : factor_(std::move(matrix)), order_(static_cast<std::size_t>(factor_.rows()))
 {

@@ -8,7 +8,7 @@
 namespace trocar::law {
 namespace {
 
-/// What rows do: -1 and 1 on that bound, 0 free.
+/// State of every row: 0 free, -1 or 1 on the lower or upper bound.
 using Sets = std::vector<signed char>;
 
 Sets sets_of(const VecX& x, const VecX& F)
@@ -19,14 +19,14 @@ Sets sets_of(const VecX& x, const VecX& F)
   return sets;
 }
 
-/// The minimum with some sets held: a factor of H on the free rows.
+/// Minimisation with the rows of `sets` held on their bounds. Holds a factor of H on the free rows.
 struct Held
 {
   Sets sets;
   std::vector<int> free{};
   core::Cholesky cholesky{};
 
-  /// False when H is not positive definite there, by round-off.
+  /// Factors H on the free rows. Returns false when H is not positive definite there, by round-off.
   bool factor(const MatX& H)
   {
     free.clear();
@@ -37,7 +37,7 @@ struct Held
     return cholesky.regular();
   }
 
-  /// Puts x on the bounds of its sets and minimises ½ xᵀHx + hᵀx over the free rows.
+  /// Puts the held rows of x on their bounds and minimises ½ xᵀHx + hᵀx over the free rows.
   VecX minimise(const MatX& H, const VecX& h, const VecX& F, VecX x) const
   {
     for (Eigen::Index i = 0; i < x.size(); ++i)
@@ -49,8 +49,8 @@ struct Held
   }
 };
 
-/// Sets that x and its gradient ask for: rows outside the box go on it, rows pulled inwards by
-/// more than the tolerance go free.
+/// The sets of the next iteration. Free rows outside the box go on their bounds. Held rows go free
+/// where the negative gradient points inwards and is larger than the tolerance.
 Sets next_sets(const VecX& x, const VecX& gradient, const VecX& F, const Sets& sets,
                double tolerance)
 {
@@ -95,13 +95,15 @@ BoxSolution primal_dual_active_set(const BoxQp& qp, const VecX& start, double to
     const int last_changes = changes;
     changes = differences(held.sets, next);
     result.finished = changes == 0;
-    // Far from the answer sets change in crowds, and one set after the other leads nowhere.
+    // Gives up if more than a quarter of the rows changes in the first iteration, or if the number
+    // of changes does not fall: more iterations would rarely help.
     const bool far = result.factorisations == 1 && 4 * changes > static_cast<int>(x.size());
     if (far || changes >= last_changes) break;
     held.sets = next;
   }
   if (!result.finished) return result;
-  // The shift set again at the answer fades: what S itself determines becomes exact.
+  // Two more proximal steps, each centred at the last answer, remove the error of the shift where S
+  // is regular.
   for (int round = 0; round < 2; ++round) {
     result.x = x;
     x = held.minimise(H, qp.s - shift * x, F, x);

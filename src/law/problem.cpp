@@ -13,7 +13,7 @@ double leader_of(const Law& law, const VecX& lambda)
   return law.leader < 0 ? 0.0 : lambda[law.leader];
 }
 
-/// Gap of rows that nothing can move, where they do not bear what it asks for.
+/// Residual of rows that nothing can move [m]: zero if λ is that of `resisting`, else |δ|.
 double unmet_gap(const Law& law, const Few& lambda, const Few& delta, double leader)
 {
   if (law.set == Law::Set::zero) return std::abs(delta[0]);
@@ -52,7 +52,8 @@ namespace {
 
 enum class RowState : signed char { low = -1, held = 0, high = 1 };
 
-/// At the lower end of its interval, within, at the upper one. `slack`: of ends that are not exact.
+/// State of a row whose λ lies in [lower, upper]. `slack`: error of limits that follow a multiplier
+/// [N].
 RowState place(double lower, double upper, double lambda, double slack)
 {
   const double width = std::max(std::isfinite(upper) ? std::abs(upper) : 0.0, std::abs(lower));
@@ -61,8 +62,8 @@ RowState place(double lower, double upper, double lambda, double slack)
   return lambda <= lower + off ? RowState::low : RowState::held;
 }
 
-/// What the rows of a block do at these multipliers. Rows that slip are high, rows that bear
-/// nothing low. Sets that follow a multiplier are met to `slack` [N].
+/// Appends the states of a block's rows. The two rows of a pair that slips are `high`; those of a
+/// pair whose radius is zero are `low`. `slack`: error of limits that follow a multiplier [N].
 void add_states(const Law& law, const Few& lambda, double leader, double slack,
                 std::vector<RowState>& states)
 {

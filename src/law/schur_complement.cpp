@@ -8,7 +8,8 @@
 namespace trocar::law {
 namespace {
 
-constexpr double near_bound = 0.8;  ///< a start beyond this part of its bound counts as slipping
+/// A row that starts above this share of its bound counts as slipping.
+constexpr double near_bound = 0.8;
 
 }  // namespace
 
@@ -106,13 +107,14 @@ std::optional<VecX> SchurComplement::all_slipping() const
   return std::nullopt;
 }
 
-/// All multipliers, zero on redundant rows, and their δ.
+/// All multipliers, zero on redundant rows [N]. `delta` becomes their δ [m].
 VecX SchurComplement::with_kept_rows(const VecX& lambda_f, VecX& delta) const
 {
   VecX lambda = VecX::Zero(problem_->rows());
   lambda(rows_.box) = lambda_f;
   delta = problem_->W * lambda + problem_->g;
-  // One step of iterative refinement: W_bb of raw crossings has condition numbers up to 1e9.
+  // One solve and one step of iterative refinement: with unmerged crossings (`-insertion_merge 0`)
+  // the condition number of W_bb is up to 1e9.
   for (int k = 0; k < 2 && !kept_.empty(); ++k) {
     lambda(kept_) -= W_bb_.solve(delta(kept_));
     delta = problem_->W * lambda + problem_->g;

@@ -6,21 +6,21 @@
 
 #include "core/math.hpp"
 
-// The cone u_0 >= |(u_1, u_2)| for interior points: its Jordan algebra and the scaling of Nesterov
-// and Todd (1997).
+// The second-order cone u_0 >= |(u_1, u_2)| for interior point methods: its Jordan algebra and the
+// scaling of Nesterov and Todd (1997).
 namespace trocar::law::cone {
 
 using core::Mat3;
 using core::Vec3;
 
-/// √(u_0² - |(u_1, u_2)|²), zero on the border.
+/// √(u_0² - |(u_1, u_2)|²), at least 1e-150, so that a point on the border causes no division by 0.
 inline double root(const Vec3& u)
 {
   const double across = u.tail<2>().norm();
   return std::sqrt(std::max((u[0] - across) * (u[0] + across), 1e-300));
 }
 
-/// a ∘ b = (a·b, a_0 b_t + b_0 a_t).
+/// Jordan product a ∘ b = (a·b, a_0 b_t + b_0 a_t).
 inline Vec3 product(const Vec3& a, const Vec3& b)
 {
   Vec3 c;
@@ -28,7 +28,7 @@ inline Vec3 product(const Vec3& a, const Vec3& b)
   return c;
 }
 
-/// The x of a ∘ x = b, a within the cone.
+/// Solves a ∘ x = b for x; a lies inside the cone.
 inline Vec3 divided(const Vec3& b, const Vec3& a)
 {
   const double determinant = root(a) * root(a);
@@ -38,7 +38,7 @@ inline Vec3 divided(const Vec3& b, const Vec3& a)
   return x;
 }
 
-/// The largest step along d that stays within the cone; infinite where all do.
+/// Largest t for which u + t d lies in the cone; infinite if every t > 0 does.
 inline double step_to_border(const Vec3& u, const Vec3& d)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -54,7 +54,7 @@ inline double step_to_border(const Vec3& u, const Vec3& d)
   return step;
 }
 
-/// The symmetric scaling W of two points of the cone: W z = W⁻¹ u = λ.
+/// Scaling of two points u and z inside the cone: the symmetric W with W z = W⁻¹ u = λ.
 struct Scaling
 {
   Scaling() = default;

@@ -13,17 +13,17 @@
 namespace trocar::law {
 namespace {
 
-/// A set whose size follows a multiplier, and its stand-in of fixed size.
+/// A set whose size is min(friction · max(λ_leader, 0), cap) [N]; a fixed set stands in for it.
 struct Followed
 {
-  std::size_t block;  ///< of the problem with fixed sets
+  std::size_t block;  ///< index of the fixed set's block
   int leader;
   double friction, cap;
-  double give = 0.0;  ///< mobility of its rows [m/N]
+  double give = 0.0;  ///< largest `mobility` of its rows [m/N]
 };
 
-/// The problem with fixed sets in the place of those that follow: a follower is a box, a cone an
-/// interval and a disc.
+/// The problem with a fixed set in place of each set that follows a multiplier: a box for a
+/// follower, an interval and a disc for a cone. The boxes and discs have size 0 at first.
 Problem with_fixed_sets(const Problem& problem, std::vector<Followed>& followed)
 {
   Problem fixed = problem;
@@ -50,9 +50,9 @@ Problem with_fixed_sets(const Problem& problem, std::vector<Followed>& followed)
   return fixed;
 }
 
-/// Takes `part` of the way to the sizes that multipliers ask for. Returns how far off they were, in
-/// the gap that makes [m]; where nothing moves there is no gap to judge it by: the size itself must
-/// settle, and if not that counts as `unsettled`.
+/// Moves the sizes of the fixed sets by the share `part` towards those that the multipliers ask
+/// for. Returns the largest |size asked for - old size| times mobility [m]. For rows without
+/// mobility the size itself must settle; until then the result is at least `unsettled` [m].
 double follow(const std::vector<Followed>& followed, const VecX& lambda, double part,
               double unsettled, Problem& fixed)
 {
@@ -69,15 +69,17 @@ double follow(const std::vector<Followed>& followed, const VecX& lambda, double 
   return change;
 }
 
-/// Tresca iteration: solve with fixed sets, take their sizes from the answer, again, until they
-/// change by less than the tolerance (in the gap they make). For small friction it contracts; where
-/// it hardly does, as when sizes overshoot in turn, they go half the way. The ratio of the last
-/// two changes is reported, and when they do not settle the step is refused.
+/// Tresca iteration: solve with fixed sets, take new sizes from the answer, repeat. It ends when
+/// the change of the sizes, times mobility [m], and the residual are within the tolerance. The
+/// iteration contracts for small friction. Once a change is more than 0.7 of the change before (for
+/// example when the sizes overshoot in turn), the sizes move only half the way. The ratio of the
+/// last two changes is reported. If the sizes do not settle, the result is not converged and the
+/// caller rejects the step.
 Multipliers settle_bounds(const Problem& problem, const Settings& settings)
 {
   constexpr int most = 50;
   constexpr double slow = 0.7;
-  // Half of the tolerance is for sizes that are not there yet.
+  // The other half of the tolerance is for the error of the sizes.
   Settings inner = settings;
   inner.tolerance = 0.5 * settings.tolerance;
   const double unsettled = 2.0 * settings.tolerance;

@@ -6,15 +6,16 @@
 namespace trocar::law {
 namespace {
 
-/// Shape functions and their derivatives on the reference triangle at the points of a rule.
+/// Shape functions and their derivatives on the reference triangle, at the points of a quadrature
+/// rule.
 struct FaceRule
 {
-  MatX N, N1, N2;  ///< (points, nodes)
-  VecX weight;     ///< sum 1/2
+  MatX N, N1, N2;  ///< shape functions, their derivatives by ξ and by η (points, nodes)
+  VecX weight;     ///< (points), their sum is 1/2
 };
 
-/// Rows (ξ, η, weight · 2). Three points integrate quadratics, as the first moment of flat faces
-/// needs; twelve integrate degree 6, as it needs on quadratic faces (Dunavant 1985).
+/// Quadrature points, one row (ξ, η, 2 · weight) each. The first moment needs degree 2 on flat
+/// faces (3 points) and degree 6 on quadratic faces (12 points, Dunavant 1985).
 MatX points(int nodes)
 {
   if (nodes == 3) {
@@ -64,7 +65,7 @@ const FaceRule& rule_of(int nodes)
 
 using Face = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6>;
 
-/// Values at one face's nodes, one column each.
+/// Nodal values of one face, one column per node.
 Face at_face(const ClosedSurface& surface, std::size_t face, const VecX& x)
 {
   Face values(3, surface.face_nodes);
@@ -83,7 +84,7 @@ void add_face(const ClosedSurface& surface, std::size_t face, const Face& values
   }
 }
 
-/// Place and tangents at one point of the rule.
+/// Position and tangent vectors at one quadrature point.
 struct Point
 {
   Point(const FaceRule& rule, Eigen::Index q, const Face& x)
@@ -94,14 +95,15 @@ struct Point
   }
   Vec3 place, along1, along2;
 
-  Vec3 normal() const { return along1.cross(along2); }  ///< not unit: times the area
+  Vec3 normal() const { return along1.cross(along2); }  ///< its length is the area element
   Vec3 normal_change(const Point& d) const
   {
     return d.along1.cross(along2) + along1.cross(d.along2);
   }
 };
 
-/// Sums kernel(rule, q, x, d) · N over faces and points.
+/// Nodal vector Σ weight · kernel(x, d) · N over all faces and quadrature points. The kernel gets
+/// the `Point` of x and the `Point` of d.
 template <class Kernel>
 VecX nodal_sum(const ClosedSurface& surface, const VecX& x, const VecX& d, const Kernel& kernel)
 {
