@@ -10,7 +10,7 @@
 
 namespace trocar::fem {
 
-/// A 3x3 block, column-major: eight entries for one register, and the last.
+/// A 3x3 block, column-major: the first eight entries fill one SIMD register, the ninth is extra.
 struct SplitBlock
 {
   Eigen::Array<double, 8, 1> head;
@@ -25,8 +25,8 @@ struct SplitBlock
   }
 };
 
-/// The pairs (a, b), a <= b, of n nodes in the order 00 01 … 0n 11 12 …: blocks of a symmetric
-/// matrix.
+/// Number of pairs (a, b), a <= b, of n nodes: the blocks of a symmetric matrix. Pairs are ordered
+/// (0, 0), (0, 1), …, (0, n − 1), (1, 1), (1, 2), ….
 constexpr std::size_t pair_count(std::size_t n)
 {
   return n * (n + 1) / 2;
@@ -43,12 +43,13 @@ constexpr std::array<std::array<int, 2>, pair_count(N)> pairs_of()
 template <int N>
 inline constexpr auto block_pairs = pairs_of<static_cast<std::size_t>(N)>();
 
-/// The 3x3 blocks of a symmetric element matrix of N nodes, by pair; transposed where the slots of
-/// the tet say so.
+/// The 3x3 blocks of a symmetric element matrix of N nodes, by pair (a, b). Where the slot of the
+/// pair says so (`BlockPattern::slots`), the block is stored transposed, as that of (b, a).
 template <int N>
 using ElementBlocks = std::array<SplitBlock, pair_count(static_cast<std::size_t>(N))>;
 
-/// Sets of local nodes that are all coupled with each other, beyond those of the tets.
+/// Sets of local nodes in which all nodes are coupled, besides the nodes of each tet. Elements that
+/// share their dilatation need such sets.
 struct Cliques
 {
   std::vector<std::size_t> start{0};
@@ -61,21 +62,22 @@ struct Cliques
   }
 };
 
-/// Where element blocks go: upper block CSR of the rows owned here (column >= row, global node
-/// numbers), and for the pairs of every local tet and clique their slots. Built once per mesh.
+/// Sparsity pattern of the operator, and the places of the element blocks in it. The pattern is
+/// block CSR of the rows owned here, upper triangle only (column >= row, global node numbers).
+/// Every pair of nodes of a local tet or clique has a slot. Built once per mesh.
 class BlockPattern
 {
  public:
   explicit BlockPattern(const Space& space, const Cliques& cliques = {});
 
-  const std::vector<int>& row_start() const { return row_start_; }  ///< owned() + 1
+  const std::vector<int>& row_start() const { return row_start_; }  ///< (owned nodes + 1)
   const std::vector<int>& column() const { return column_; }
-  /// Local node of every column.
+  /// Local node number of every entry of `column`.
   const std::vector<int>& local_column() const { return local_column_; }
   std::size_t block_count() const { return column_.size(); }
 
-  /// Twice the index of a pair's block, and 1 when it is stored transposed; -1 when its row is
-  /// owned elsewhere.
+  /// Slots of the pairs of a local tet. A slot is twice the index of the pair's block, plus 1 when
+  /// the block is stored transposed; -1 when another rank owns the row.
   std::span<const int> slots(std::size_t local_tet) const
   {
     return {&tet_slots_[pairs_per_tet_ * local_tet], pairs_per_tet_};
@@ -95,7 +97,8 @@ class BlockPattern
   std::vector<std::size_t> clique_start_{0};
 };
 
-/// Values on a BlockPattern. Blocks are column-major, as PETSc's SBAIJ wants them.
+/// Values of a matrix on a BlockPattern. Blocks are column-major, as PETSc's SBAIJ format takes
+/// them. Borrows the pattern.
 class BlockMatrix
 {
  public:
@@ -106,7 +109,7 @@ class BlockMatrix
 
   void set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
-  /// Adds the blocks of a tet to the slots of its pairs.
+  /// Adds the blocks of a tet at the slots of its pairs.
   template <std::size_t P>
   void add(std::span<const int> slots, const std::array<SplitBlock, P>& blocks)
   {
@@ -118,11 +121,12 @@ class BlockMatrix
     }
   }
 
-  /// Adds scale b bᵀ for nodal vectors b (3, nodes of the clique) to the slots of its pairs.
+  /// Adds scale b bᵀ at the slots of a clique's pairs; b (3 x nodes of the clique) holds a vector
+  /// per node.
   void add_rank_one(std::span<const int> slots, const Eigen::Matrix3Xd& b, double scale);
 
-  /// Zeroes rows and columns of fixed dofs; keeps their diagonal entry, so that the scale of the
-  /// matrix does not depend on the supports.
+  /// Zeroes the rows and columns of fixed dofs, except for their diagonal entries. So the scale of
+  /// the matrix does not depend on the supports.
   void fix(const Space& space, const Dirichlet& fixed);
 
   /// A x. Collective.

@@ -6,8 +6,8 @@
 
 namespace trocar::fem {
 
-/// Dofs whose displacement is prescribed, known on every rank. A value of this type is part of the
-/// operator: a change of the fixed set is a new operator.
+/// The fixed dofs, whose displacement is prescribed; known on every rank. They are part of the
+/// operator: another set of fixed dofs needs a new operator. Borrows the space.
 class Dirichlet
 {
  public:
@@ -25,7 +25,7 @@ class Dirichlet
   {
     return axes_of_number(space_->number_of_file(file_node)) >> axis & 1U;
   }
-  /// Bits of the fixed axes (1, 2, 4) of the node with that global number.
+  /// Fixed axes of the node with this global number, as bits: 1 for x, 2 for y, 4 for z.
   unsigned axes_of_number(int number) const { return axes_[static_cast<std::size_t>(number)]; }
 
   /// Sets the entries of fixed dofs to zero.
@@ -37,7 +37,7 @@ class Dirichlet
   }
 
  private:
-  std::vector<unsigned char> axes_;  ///< by global number
+  std::vector<unsigned char> axes_;  ///< fixed axes as bits, by global node number
   const Space* space_;
 };
 

@@ -7,37 +7,38 @@
 
 namespace trocar::fem {
 
-/// Shape gradients of a tet with N nodes (4 or 10) at an integration point, and the volume that
+/// Shape gradients of a tet with N nodes (4 or 10) at an integration point, and the volume that the
 /// point stands for.
 template <int N>
 struct PointShape
 {
   Eigen::Matrix<double, 3, N> gradient;  ///< column a = grad N_a [1/m]
-  double volume;                         ///< weight times Jacobian [m³]
+  double volume;                         ///< weight times Jacobian determinant [m³]
 };
 
-/// Linear tets: the gradients are constant, one point does.
+/// For linear tets: gradients are constant, so one integration point is enough.
 using TetShape = PointShape<4>;
 
-/// Integration points of the stiffness: exact for straight tets.
+/// Number of integration points of the stiffness, which are exact for straight tets.
 template <int N>
 inline constexpr int points_per_tet = N == 4 ? 1 : 4;
 
-/// Values of the four linear shape functions at these points, one point per column.
+/// Barycentric coordinates of the integration points, which are also the values of the four linear
+/// shape functions there; one point per column.
 template <int N>
 Eigen::Matrix<double, 4, points_per_tet<N>> corner_weights()
 {
   if constexpr (N == 4) {
     return Eigen::Vector4d::Constant(0.25);
   } else {
-    // Degree 2 (Hammer and Stroud 1956).
+    // Quadrature of degree 2 (Hammer and Stroud 1956).
     const double own = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;
     const double other = (5.0 - std::sqrt(5.0)) / 20.0;
     return Eigen::Matrix4d::Constant(other) + (own - other) * Eigen::Matrix4d::Identity();
   }
 }
 
-/// ∫ N_a N_b over V of a straight tet, exact.
+/// (∫ N_a N_b dV) / V of a straight tet, exact.
 template <int N>
 Eigen::Matrix<double, N, N> straight_mass()
 {
@@ -46,8 +47,9 @@ Eigen::Matrix<double, N, N> straight_mass()
     mass.setConstant(1.0 / 20.0);
     mass.diagonal().setConstant(1.0 / 10.0);
   } else {
-    // By the corners that the nodes have in common: corners 6 and 1, corner and middle -4 (an end)
-    // and -6, middles 32, 16 (a common end) and 8, over 420.
+    // Entries times 420. Two corners: 6 if equal, else 1. A corner and a middle node: -4 if the
+    // corner is an end of the edge, else -6. Two middle nodes: 32 if equal, 16 if their edges have
+    // an end in common, else 8.
     const auto ends = [](int a) -> std::array<int, 2> {
       if (a < 4) return {a, a};
       const auto [i, j] = mesh::tet_edges[static_cast<std::size_t>(a - 4)];
@@ -72,12 +74,12 @@ Eigen::Matrix<double, N, N> straight_mass()
 
 TetShape tet_shape(const std::array<core::Vec3, 4>& corner);
 
-/// The quadratic tet with these node positions at barycentric coordinates `at`; `weight` is the
-/// point's part of the reference volume.
+/// Shape gradients and volume of an integration point at the barycentric coordinates `at` of a
+/// quadratic tet with the node positions x [m]. The weights of a tet's points add up to 1.
 PointShape<10> quadratic_point(const Eigen::Matrix<double, 3, 10>& x, const Eigen::Vector4d& at,
                                double weight);
 
-/// All integration points of a tet.
+/// Shape gradients and volumes of all integration points of a tet.
 template <int N>
 std::array<PointShape<N>, points_per_tet<N>> point_shapes(const mesh::Mesh& mesh, int tet)
 {

@@ -50,7 +50,8 @@ void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& o
                                int overlap_layers)
 {
   const int me = comm_.rank();
-  std::vector<char> near(owner.size(), 0);  // nodes of the tets so far, those owned here before any
+  // Nodes of the local tets found so far; before the first layer, the owned nodes.
+  std::vector<char> near(owner.size(), 0);
   for (std::size_t node = 0; node < owner.size(); ++node) near[node] = owner[node] == me;
   for (int layer = 0; layer < overlap_layers; ++layer) {
     const std::vector<char> inner = near;
@@ -64,7 +65,7 @@ void Space::collect_local_tets(const mesh::Mesh& mesh, const std::vector<int>& o
     }
   }
   file_node_.assign(file_order_.begin() + first_, file_order_.begin() + first_ + owned_);
-  // Ghosts by global number, hence by owner: each rank's values arrive as one contiguous run.
+  // Ghosts are sorted by global number, hence by owner: values from one rank arrive contiguously.
   for (int node : file_order_)
     if (near[index(node)] && owner[index(node)] != me) file_node_.push_back(node);
   std::vector<int> local_of(owner.size(), -1);
@@ -143,7 +144,7 @@ GlobalField Space::gather(const OwnedField& field) const
 std::vector<double> Space::gather_tets(std::span<const double> values) const
 {
   const std::size_t width = tets() > 0 ? values.size() / tets() : 0;
-  std::vector<int> mine;  // a tet is told by the owner of its first node
+  std::vector<int> mine;  // each tet is sent once, by the owner of its first node
   std::vector<double> numbers;
   for (std::size_t t = 0; t < tets(); ++t) {
     if (nodes(t).front() >= owned_) continue;

@@ -12,8 +12,8 @@ namespace trocar::fem {
 using core::Vec3;
 using core::VecX;
 
-/// Values at the nodes this rank owns, three per node, in local order. A value type: states copy
-/// it freely. Without ghosts: what linear algebra works on.
+/// Values at the nodes that this rank owns, three per node, in local order. Linear algebra works on
+/// this type. It has value semantics: states copy it freely.
 struct OwnedField
 {
   VecX value;
@@ -22,7 +22,7 @@ struct OwnedField
   auto node(int local) const { return value.segment<3>(3 * local); }
 };
 
-/// Values at owned nodes followed by ghost nodes: what element loops read.
+/// Values at the owned nodes and then the ghost nodes. Element loops read this type.
 struct GhostedField
 {
   VecX value;
@@ -39,8 +39,8 @@ struct GlobalField
   auto node(int file_node) const { return value.segment<3>(3 * file_node); }
 };
 
-/// How a state shows values by integration point of the local tets, as many in each of them: other
-/// ranks have other parts of such a list.
+/// Marks a list of values at integration points where a state names its members (core/visit.hpp).
+/// The list holds this rank's local tets only, with equally many values for each tet.
 template <class List>
 struct ByPoint
 {
@@ -49,11 +49,12 @@ struct ByPoint
 template <class List>
 ByPoint(List&) -> ByPoint<List>;
 
-/// The dof map of linear or quadratic tets: three dofs per node; each rank owns the nodes the
-/// partition gives it, numbered contiguously by rank and in file order within a rank. A rank's
-/// local tets are all tets that touch a node it owns, so that it can assemble its own rows without
-/// communication; with two `overlap_layers` also those that touch a node of these, which elements
-/// that share their dilatation need.
+/// The dof map of linear or quadratic tets, with three dofs per node. Each rank owns the nodes that
+/// the partition gives it. A node has an index in the mesh ("file node"), a global number,
+/// which is contiguous by rank and in file order within a rank, and a local number (owned, then
+/// ghosts). The local tets of a rank are all tets with a node that the rank owns, so that it
+/// assembles its own rows without communication. With two `overlap_layers` the tets with a node of
+/// those tets are local too; elements that share their dilatation need them.
 class Space
 {
  public:
@@ -63,7 +64,7 @@ class Space
   const base::Comm& comm() const { return comm_; }
   int owned() const { return owned_; }                               ///< nodes owned here
   int local() const { return static_cast<int>(file_node_.size()); }  ///< owned + ghost nodes
-  int global() const { return static_cast<int>(number_.size()); }    ///< nodes in all
+  int global() const { return static_cast<int>(number_.size()); }    ///< nodes of the mesh
   int first() const { return first_; }  ///< global number of the first owned node
   int owned_dofs() const { return 3 * owned_; }
 
@@ -80,7 +81,7 @@ class Space
   int tets_of_mesh() const { return tets_of_mesh_; }
   std::size_t tets() const { return file_tet_.size(); }  ///< local tets, in file order
   int file_tet(std::size_t local_tet) const { return file_tet_[local_tet]; }
-  /// Local nodes of a local tet, `nodes_per_tet`, as `mesh::TetNodes` has them.
+  /// Local node numbers of a local tet, in the order of `mesh::TetNodes`.
   std::span<const int> nodes(std::size_t local_tet) const
   {
     const auto count = index(nodes_per_tet_);
@@ -88,14 +89,14 @@ class Space
   }
 
   OwnedField zero() const { return {VecX::Zero(owned_dofs())}; }
-  GhostedField with_ghosts(const OwnedField& field) const;  ///< collective
-  /// Sums every rank's contributions to a node at its owner. Collective.
+  GhostedField with_ghosts(const OwnedField& field) const;  ///< fetches ghosts; collective
+  /// Sums the contributions of all ranks to a node at the owner of the node. Collective.
   OwnedField sum_at_owners(const GhostedField& field) const;
-  GlobalField gather(const OwnedField& field) const;  ///< collective, on every rank
-  /// Numbers by local tet, as many of each, of all tets in file order on rank 0; nothing elsewhere.
-  /// Collective.
+  GlobalField gather(const OwnedField& field) const;  ///< on every rank; collective
+  /// Gathers values of the local tets, equally many for each tet. Rank 0 gets those of all tets in
+  /// file order, other ranks an empty list. Collective.
   std::vector<double> gather_tets(std::span<const double> values) const;
-  /// The local tets' part of such a list. Not collective.
+  /// The values of the local tets, from a list of all tets in file order. Not collective.
   std::vector<double> of_local_tets(std::span<const double> values) const;
   /// The owned part of a global field. Not collective.
   OwnedField restrict_to_owned(const GlobalField& field) const;
@@ -119,8 +120,8 @@ class Space
   std::vector<int> file_node_;   ///< file node by local node
   int nodes_per_tet_;
   std::vector<int> file_tet_, tet_node_;
-  std::vector<int> counts_, starts_;          ///< owned dofs and first dof of every rank
-  std::vector<int> send_nodes_;               ///< local owned nodes, by receiving rank
+  std::vector<int> counts_, starts_;  ///< number of owned dofs, and first dof, of every rank
+  std::vector<int> send_nodes_;  ///< owned nodes that other ranks have as ghosts, by receiving rank
   std::vector<int> send_count_, send_start_;  ///< in dofs, by rank
   std::vector<int> receive_count_, receive_start_;
 };

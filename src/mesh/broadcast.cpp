@@ -2,7 +2,7 @@
 
 #include "mesh/mesh.hpp"
 
-// Apart from the rest of the mesh, which knows no ranks.
+// In a separate file, because mesh.cpp does not use MPI.
 namespace trocar::mesh {
 namespace {
 

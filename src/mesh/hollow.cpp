@@ -10,7 +10,7 @@
 namespace trocar::mesh {
 namespace {
 
-/// Index of the volume to be removed.
+/// Index of the volume to be removed; Failure (65) where it cannot be.
 int volume_index(const Mesh& mesh, const std::string& volume)
 {
   const auto at = std::find(mesh.volumes.begin(), mesh.volumes.end(), volume);
@@ -26,8 +26,8 @@ int volume_index(const Mesh& mesh, const std::string& volume)
   return static_cast<int>(at - mesh.volumes.begin());
 }
 
-/// Keeps tets outside the volume and the nodes they have; `number` gets the new number of every
-/// node, -1 where it is gone.
+/// The tets outside the volume and their nodes, without physical groups. `number` gets the new
+/// number of every old node, -1 for a dropped node.
 Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
 {
   Mesh rest;
@@ -65,7 +65,7 @@ Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
   return rest;
 }
 
-/// The group without the nodes that are gone.
+/// The group in the new numbering, without dropped nodes and their edges.
 PointGroup renumbered_group(const PointGroup& group, const std::vector<int>& number)
 {
   PointGroup kept{group.name, {}, {}};

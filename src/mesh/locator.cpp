@@ -35,7 +35,7 @@ Locator::Locator(const Mesh& mesh) : mesh_(&mesh)
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const TetPositions p = positions(mesh, t);
     Vec3 low = p.rowwise().minCoeff(), high = p.rowwise().maxCoeff();
-    if (!is_straight(p)) {  // a curved face may go a little beyond its nodes
+    if (!is_straight(p)) {  // a curved face may bulge beyond the box of its nodes
       const Vec3 beyond = 0.1 * (high - low);
       low -= beyond;
       high += beyond;

@@ -7,7 +7,8 @@
 
 namespace trocar::mesh {
 
-/// Finds tets by place in the reference mesh (R-tree over their boxes). Borrows the mesh.
+/// Finds tets by position in the reference mesh, with an R-tree of their bounding boxes. Borrows
+/// the mesh.
 class Locator
 {
  public:
@@ -16,17 +17,18 @@ class Locator
   Locator(Locator&&) noexcept;
   Locator& operator=(Locator&&) noexcept;
 
-  /// Tets whose box meets the box [low, high] (m), ascending.
+  /// Tets whose bounding box intersects the box [low, high] (m), ascending.
   std::vector<int> in_box(const Vec3& low, const Vec3& high) const;
 
-  /// The lowest-numbered tet that holds p up to `tolerance` times its longest edge, or -1.
+  /// The lowest-numbered tet in which no local coordinate of p is below -`tolerance`; -1 where
+  /// there is none.
   int tet_at(const Vec3& p, double tolerance = 1e-6) const;
 
  private:
   struct Tree;
   const Mesh* mesh_;
   std::unique_ptr<Tree> tree_;
-  double longest_edge_ = 0.0;  ///< bound of it: the largest box diagonal [m]
+  double longest_edge_ = 0.0;  ///< upper bound: the largest box diagonal [m]
 };
 
 }  // namespace trocar::mesh

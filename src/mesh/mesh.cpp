@@ -17,7 +17,8 @@ std::vector<std::string> surface_names(const Mesh& mesh)
   return names;
 }
 
-/// No group of that kind has the name: one of these was meant, any of them where it is a volume.
+/// Failure (65) for a name that no group of this kind has. Suggests the nearest of `names`; lists
+/// all of them where the name is that of a volume.
 core::Failure no_group(const Mesh& mesh, const std::string& kind, const std::string& name,
                        const std::vector<std::string>& names)
 {

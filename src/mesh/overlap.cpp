@@ -16,11 +16,12 @@ using Box = bg::model::box<Point>;
 using Entry = std::pair<Box, int>;
 using Corners = std::array<Vec3, 4>;
 
-/// Pairs that are looked at: a mesh needs some tens for each tet at its boundary; in a heap of tets
-/// at one place they would be the square of these.
+/// Largest number of pairs of tets to test: `least_pairs`, plus `most_per_tet` for each boundary
+/// tet. A mesh needs some tens for each boundary tet; n tets at one place would need n² in all.
 constexpr long long most_per_tet = 200, least_pairs = 1'000'000;
 
-constexpr double touching = 1e-9;  ///< of the longest edge: what rounding makes of coordinates
+/// Overlap, as a fraction of the longest edge, that rounding of coordinates may cause.
+constexpr double touching = 1e-9;
 
 Box box_of(const Corners& x)
 {
@@ -29,7 +30,7 @@ Box box_of(const Corners& x)
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
-/// Overlap of the shadows of two tets on an axis.
+/// Overlap of the projections of two tets onto a unit axis [m], negative when they are apart.
 double shadow(const Corners& a, const Corners& b, const Vec3& axis)
 {
   constexpr double far = std::numeric_limits<double>::max();
@@ -44,8 +45,8 @@ double shadow(const Corners& a, const Corners& b, const Vec3& axis)
   return std::min(a_high - b_low, b_high - a_low);
 }
 
-/// How far the middles of edges are from their chords: straight tets of a curved mesh may overlap
-/// by that much where the curved ones do not [m].
+/// Largest distance of a middle node of the tet from the midpoint of its edge's chord [m]. The
+/// straight tets of a curved mesh may overlap by this much where the curved tets do not.
 double sagitta(const Mesh& mesh, int tet)
 {
   if (!mesh.quadratic()) return 0.0;
@@ -62,11 +63,12 @@ double sagitta(const Mesh& mesh, int tet)
 
 }  // namespace
 
-// Convex bodies that do not overlap are separated along a normal of a face or of two edges.
+// Separating axis theorem: of two convex polyhedra that do not overlap, the projections onto the
+// normal of some face, or onto the cross product of two edges, do not overlap.
 double overlap_depth(const Corners& a, const Corners& b)
 {
   const double least = touching * std::max(longest_edge(a), longest_edge(b));
-  const Vec3 origin = a[0];  // shadows are rounded with the distance from there
+  const Vec3 origin = a[0];  // near both tets: less rounding in the projections
   Corners p = a, q = b;
   for (std::size_t k = 0; k < 4; ++k) {
     p[k] -= origin;

@@ -16,7 +16,7 @@ std::vector<int> metis_node_parts(const Mesh& mesh, int part_count)
     start.push_back(static_cast<idx_t>(nodes.size()));
   }
   idx_t tets = mesh.tet_count(), count = mesh.node_count(), parts = part_count, cut = 0;
-  idx_t shared_nodes = mesh.quadratic() ? 6 : 3;  // of two tets with a common face
+  idx_t shared_nodes = mesh.quadratic() ? 6 : 3;  // nodes of a face that two tets share
   std::vector<idx_t> tet_part(mesh.tets.size()), node_part(mesh.x.size());
   const int status =
       METIS_PartMeshDual(&tets, &count, start.data(), nodes.data(), nullptr, nullptr, &shared_nodes,
@@ -35,7 +35,7 @@ std::vector<int> partition_nodes(const Mesh& mesh, const base::Comm& comm)
   std::vector<int> owner(mesh.x.size(), 0);
   if (comm.size() == 1) return owner;
   base::on_root(comm, [&] {
-    // METIS wants at least one tet per part; a smaller mesh leaves the last ranks empty.
+    // METIS needs at least one tet per part. With fewer tets the last ranks own nothing.
     const int parts = std::min(comm.size(), mesh.tet_count());
     if (parts > 1) owner = metis_node_parts(mesh, parts);
   });

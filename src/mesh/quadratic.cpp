@@ -149,7 +149,7 @@ std::array<Vec3, 4> corners_of(const TetPositions& x)
   return {x.col(0), x.col(1), x.col(2), x.col(3)};
 }
 
-/// Derivatives of the map by coordinates 1, 2, 3, coordinate 0 being the rest.
+/// Jacobian of the map by barycentric coordinates 1, 2, 3; coordinate 0 is 1 minus their sum.
 core::Mat3 jacobian(const TetPositions& x, const Eigen::Vector4d& at)
 {
   const Eigen::Matrix<double, 3, 4> by = x * quadratic_derivatives(at);
@@ -180,7 +180,7 @@ double curved_volume(const TetPositions& x)
 {
   const auto p = corners_of(x);
   if (is_straight(x)) return tet_volume(p[0], p[1], p[2], p[3]);
-  // Degree 3 (Zienkiewicz and Taylor 2000, table 9.2): the middle and four points around it.
+  // Quadrature of degree 3 (Zienkiewicz and Taylor 2000, table 9.2): centroid and four points.
   constexpr double middle = -4.0 / 5.0, around = 9.0 / 20.0;
   double mean = middle * jacobian(x, Eigen::Vector4d::Constant(0.25)).determinant();
   for (int a = 0; a < 4; ++a) {

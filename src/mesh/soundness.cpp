@@ -29,7 +29,7 @@ std::string counted(long long number, const std::string& one, const std::string&
   return std::to_string(number) + " " + (number == 1 ? one : more);
 }
 
-/// A triangle of a surface, by the nodes that name it.
+/// Triangle number `place` of surface number `surface`, with its nodes ascending.
 struct Triangle
 {
   Face nodes;
@@ -48,7 +48,7 @@ std::vector<Triangle> triangles_of(const Mesh& mesh)
   return all;
 }
 
-/// A face that more than two tets have, or two on one side of it.
+/// Failure (65) for a face of more than two tets, or of two tets on the same side of the face.
 void refuse_face(const Mesh& mesh, std::span<const TetFace> same)
 {
   const bool one_side = same.size() == 2 && same[0].turned == same[1].turned;
@@ -66,7 +66,7 @@ void refuse_face(const Mesh& mesh, std::span<const TetFace> same)
       nodes);
 }
 
-/// Triangles that are faces stay, once each.
+/// Keeps every triangle that is a face of a tet once. Other triangles become strays.
 void sort_out(Mesh& mesh, const std::vector<Triangle>& triangles, const std::vector<bool>& is_face)
 {
   std::vector<std::vector<bool>> keep;
@@ -101,7 +101,7 @@ void sort_out(Mesh& mesh, const std::vector<Triangle>& triangles, const std::vec
   }
 }
 
-/// Edges in which the boundary meets itself.
+/// Adds a remark about edges with more than two boundary faces: there the boundary touches itself.
 void tell_of_edges(Mesh& mesh, const std::vector<TetFace>& boundary)
 {
   std::vector<std::array<int, 2>> edges;
@@ -123,7 +123,7 @@ void tell_of_edges(Mesh& mesh, const std::vector<TetFace>& boundary)
                            node_tag_of(mesh, first[1]) + "): tetrahedra hang together there alone");
 }
 
-/// Nodes of the boundary that lie where another one does.
+/// Adds a remark about boundary nodes with the same position, to 1e-9 of the mesh's extent.
 void tell_of_coincident(Mesh& mesh, const std::vector<TetFace>& boundary)
 {
   std::vector<int> nodes;
@@ -156,7 +156,7 @@ void tell_of_coincident(Mesh& mesh, const std::vector<TetFace>& boundary)
                            "): the tissue is not glued together there");
 }
 
-/// A box around each part.
+/// Bounding box of a connected part [m], and its first node.
 struct Part
 {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
@@ -181,11 +181,12 @@ std::vector<Part> parts_of(const Mesh& mesh, const std::vector<int>& part, int c
   return parts;
 }
 
-/// Parts that are wholly inside a tet's part without a crossing of boundaries.
+/// Number of parts whose first node lies inside a tet of another part. So a part that lies wholly
+/// inside another one is found, although the tets at their boundaries do not overlap.
 long long parts_inside_others(const Mesh& mesh, const std::vector<int>& part, int count)
 {
   const std::vector<Part> parts = parts_of(mesh, part, count);
-  std::optional<Locator> locator;  // only where one box is in another
+  std::optional<Locator> locator;  // made when the first box within another is found
   long long inside = 0;
   for (const Part& one : parts) {
     const auto holds = [&](const Part& other) { return &other != &one && one.within(other); };
@@ -275,7 +276,7 @@ void judge(Mesh& mesh)
 {
   const std::vector<Triangle> triangles = triangles_of(mesh);
   std::vector<bool> is_face(triangles.size(), false);
-  std::size_t next = 0;  // both come in the order of their nodes
+  std::size_t next = 0;  // index into `triangles`, which are sorted like the faces
   std::vector<TetFace> boundary;
   visit_faces(mesh, [&](std::span<const TetFace> same) {
     refuse_face(mesh, same);

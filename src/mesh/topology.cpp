@@ -10,11 +10,12 @@
 namespace trocar::mesh {
 namespace {
 
-// Local faces of a positively oriented tet, each opposite to a corner, normals outward.
+// Corners of the faces of a positively oriented tet. Face k is opposite to corner k; normals point
+// outward.
 constexpr std::array<std::array<std::size_t, 3>, 4> tet_faces{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-/// Tets around the nodes that `nodes_of_tet` says they have.
+/// Tets around each node, if tet t has the nodes `nodes_of_tet(t)`.
 template <class NodesOfTet>
 NodeToTets tets_around(const Mesh& mesh, const NodesOfTet& nodes_of_tet)
 {
@@ -31,7 +32,7 @@ NodeToTets tets_around(const Mesh& mesh, const NodesOfTet& nodes_of_tet)
   return map;
 }
 
-/// Adds the faces of t whose least node is `node`.
+/// Adds the faces of tet t that have `node` as their lowest-numbered node.
 void add_faces_from(const Mesh& mesh, int t, int node, std::vector<TetFace>& faces)
 {
   const Tet& tet = mesh.tets[static_cast<std::size_t>(t)];

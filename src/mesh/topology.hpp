@@ -8,10 +8,10 @@
 
 namespace trocar::mesh {
 
-/// The face's nodes ascending: its name, whichever way it looks.
+/// The nodes of the face in ascending order: a key that does not depend on the orientation.
 Face sorted(Face face);
 
-/// Tets around each node, compressed: those of node i are tet[start[i]] … tet[start[i+1]-1],
+/// Tets around each node in compressed rows: node i has tet[start[i]] … tet[start[i+1]-1],
 /// ascending.
 struct NodeToTets
 {
@@ -19,17 +19,17 @@ struct NodeToTets
 };
 NodeToTets node_to_tets(const Mesh& mesh);
 
-/// A face as one tet has it.
+/// A face as seen from one of its tets.
 struct TetFace
 {
   Face nodes;  ///< ascending
   int tet;
-  int local;    ///< the corner opposite to it
-  bool turned;  ///< seen from outside of the tet, its nodes run clockwise
+  int local;    ///< local number of the corner opposite to the face
+  bool turned;  ///< `nodes` run clockwise when seen from outside the tet
 };
 
-/// Shows every face with all tets that have it, faces in the order of their nodes. Memory for the
-/// tets of the nodes alone.
+/// Calls `visit` once for every face, with one TetFace for each tet of the face. Faces come in
+/// ascending order of their nodes. The only memory needed is that of the tets around each node.
 void visit_faces(const Mesh& mesh, const std::function<void(std::span<const TetFace>)>& visit);
 
 /// A face on the boundary, oriented so that its normal points out of its tet.
@@ -39,10 +39,11 @@ struct BoundaryFace
   int tet;
 };
 
-/// Faces that belong to exactly one tet, in tet order.
+/// Faces that belong to exactly one tet, in the order of their tets.
 std::vector<BoundaryFace> boundary_faces(const Mesh& mesh);
 
-/// Component number of every node: nodes joined by tets share one. `count` gets how many.
+/// Number of the connected component of every node. Nodes of the same tet are in the same
+/// component. `count` gets the number of components.
 std::vector<int> connected_components(const Mesh& mesh, int& count);
 
 }  // namespace trocar::mesh

@@ -11,7 +11,7 @@
 namespace trocar::solve {
 namespace {
 
-constexpr double most_extra_flops = 1.1;  ///< what pinning may cost the factors
+constexpr double most_extra_flops = 1.1;  ///< limit: flops with nodes ordered last / flops without
 constexpr int in_interface = -1;
 
 using Graph = std::vector<std::vector<int>>;  ///< neighbours of every node
@@ -21,14 +21,14 @@ std::size_t at(int i)
   return static_cast<std::size_t>(i);
 }
 
-/// One entry of the upper triangle in free dofs, and where its value stands in the blocks.
+/// Upper-triangle entry of a domain's matrix, in dofs of the domain, and the source of its value.
 struct Entry
 {
   int column, row;
   long long source;
 };
 
-/// Entries by one of their two numbers below `size`; those with the same one stay as they are.
+/// Stable counting sort of the entries by their row or column, which is less than `size`.
 std::vector<Entry> sorted_by(int Entry::*number, const std::vector<Entry>& entries, int size)
 {
   std::vector<std::size_t> place(at(size) + 1, 0);
@@ -39,7 +39,7 @@ std::vector<Entry> sorted_by(int Entry::*number, const std::vector<Entry>& entri
   return sorted;
 }
 
-/// Sorts the entries into a pattern, and their sources alike.
+/// Sorts the entries into a pattern. `source` gets their sources in the order of the pattern.
 SymmetricPattern lay_out(std::vector<Entry> entries, int size, std::vector<long long>& source)
 {
   for (auto number : {&Entry::row, &Entry::column}) entries = sorted_by(number, entries, size);
@@ -54,7 +54,7 @@ SymmetricPattern lay_out(std::vector<Entry> entries, int size, std::vector<long 
   return pattern;
 }
 
-/// Nested dissection of a graph given as neighbour lists: the vertex at each place.
+/// Elimination order by METIS's nested dissection: the vertex of the graph at each place.
 std::vector<int> dissection(const Graph& neighbours)
 {
   const auto n = neighbours.size();
@@ -91,7 +91,7 @@ Graph graph_of(const WholePattern& whole)
   return neighbours;
 }
 
-/// Rank in whose domain a node lies, or `in_interface`.
+/// For every node the rank in whose domain it lies, or `in_interface`.
 std::vector<int> homes(const WholePattern& whole, const Graph& neighbours)
 {
   std::vector<int> home(at(whole.nodes()));
@@ -106,16 +106,16 @@ std::vector<int> homes(const WholePattern& whole, const Graph& neighbours)
   return home;
 }
 
-/// Numbers of dofs within the domains and in the interface, and the entries of each domain.
+/// Makes a dissection: numbers the dofs of domains and interface, and collects matrix entries.
 struct Builder
 {
   const WholePattern& whole;
   const Graph neighbours;
   Dissection result;
-  std::vector<int> home;                     ///< by node
-  std::vector<int> index;                    ///< by whole dof: in its domain, or in the interface
-  std::vector<std::vector<int>> open_index;  ///< by rank and interface dof: the domain's, or -1
-  std::vector<std::vector<Entry>> entries;   ///< by rank
+  std::vector<int> home;   ///< by node: rank of its domain, or in_interface
+  std::vector<int> index;  ///< by global dof: number in domain or interface, or -1
+  std::vector<std::vector<int>> open_index;  ///< by rank, interface dof: domain's dof, or -1
+  std::vector<std::vector<Entry>> entries;   ///< by rank: those of its domain
 
   explicit Builder(const WholePattern& w)
       : whole(w), neighbours(graph_of(w)), index(w.free.size(), -1), entries(at(w.ranks()))
@@ -133,7 +133,7 @@ struct Builder
     for (int rank = 0; rank < whole.ranks(); ++rank) finish(rank);
   }
 
-  /// Counts the work, to compare ways to share it.
+  /// Flops of all factors, to compare dissections with and without nodes ordered last.
   void weigh()
   {
     result.flops = std::pow(static_cast<double>(result.interface.size()), 3) / 3.0;
@@ -158,7 +158,7 @@ struct Builder
     for (int rank = 0; rank < whole.ranks(); ++rank) open_up(rank);
   }
 
-  /// Adds the dofs of the interface that a domain touches.
+  /// Appends the interface dofs that a domain touches to the domain, as its open dofs.
   void open_up(int rank)
   {
     Domain& domain = result.domain[at(rank)];
@@ -178,7 +178,7 @@ struct Builder
       }
   }
 
-  /// Shares the entries of the blocks out.
+  /// Gives every entry of the blocks to a domain or to the interface.
   void collect()
   {
     for (std::size_t k = 0; k < whole.row.size(); ++k)
@@ -207,7 +207,7 @@ struct Builder
   {
     Domain& domain = result.domain[at(rank)];
     const int size = static_cast<int>(domain.dof.size()), closed = size - domain.open;
-    for (int j = closed; j < size; ++j) {  // the open places among each other
+    for (int j = closed; j < size; ++j) {  // couples all open dofs with each other
       for (int i = closed; i < j; ++i) entries[at(rank)].push_back({j, i, Source::nothing});
       entries[at(rank)].push_back({j, j, Source::row_sum(index[at(domain.dof[at(j)])])});
     }
@@ -216,8 +216,8 @@ struct Builder
     domain.order = order(rank, whole.ranks() > 1 ? std::vector<int>{} : whole.ordered_last);
   }
 
-  /// Ties a part of a domain that touches no open dof to one by a zero entry. So the open dofs
-  /// stay last in the elimination tree.
+  /// A connected part of the domain may touch no open dof. Couples every such part with the first
+  /// open dof by a zero entry, so that the open dofs stay last in the elimination tree.
   void tie_loose_ends(int rank, int first_open)
   {
     std::vector<bool> seen(home.size(), false);
@@ -244,12 +244,12 @@ struct Builder
     }
   }
 
-  /// Nested dissection of the domain's nodes (as good as that of its dofs, with a ninth of the
-  /// edges); those in `last` after them, and the open ones at the end.
+  /// Elimination order of a domain: nodes by nested dissection, then the nodes in `last`, then the
+  /// open dofs. Dissecting nodes is as good as dissecting dofs, with a ninth of the edges.
   std::vector<int> order(int rank, const std::vector<int>& last) const
   {
     const Domain& domain = result.domain[at(rank)];
-    std::vector<int> place(home.size(), -1), nodes;  // of the nodes to dissect
+    std::vector<int> place(home.size(), -1), nodes;  // vertex by node, and node by vertex
     std::vector<bool> is_last(home.size(), false);
     for (int node : last) is_last[at(node)] = true;
     for (int node = 0; node < whole.nodes(); ++node)

@@ -6,64 +6,70 @@
 
 namespace trocar::solve {
 
-constexpr int most_interface = 6000;   ///< dofs that ranks may share before others solve better
-constexpr int last_interface = 30000;  ///< and beyond which they do not fit
+/// Largest interface for provider `automatic` [dofs]. For a larger one MUMPS is the better solver.
+constexpr int most_interface = 6000;
+/// Largest interface for provider `supernodal` [dofs]. The dense block of a larger one does not
+/// fit.
+constexpr int last_interface = 30000;
 
-/// The blocks of the whole matrix (upper triangle, node numbers), which dofs are free, and who owns
-/// the nodes.
+/// Pattern of the whole matrix: its blocks (upper triangle, global node numbers), the free dofs and
+/// the owners of the nodes. Complete on rank 0 only. Global dof = 3 × global node + axis.
 struct WholePattern
 {
-  std::vector<int> row, column;    ///< by block
-  std::vector<bool> free;          ///< by dof, 3 node + axis
-  std::vector<int> first_of_rank;  ///< first node of every rank, and the number of nodes
+  std::vector<int> row, column;    ///< node numbers of every block
+  std::vector<bool> free;          ///< by global dof; false: prescribed displacement
+  std::vector<int> first_of_rank;  ///< first node of every rank, then the number of nodes
   std::vector<int> ordered_last;   ///< nodes to be eliminated last
-  int most_shared =
-      most_interface;  ///< dofs of the interface beyond which nothing but it is wanted
+  /// Largest interface [dofs]. For a larger one `dissect` gives the interface and empty domains.
+  int most_shared = most_interface;
 
   int ranks() const { return static_cast<int>(first_of_rank.size()) - 1; }
   int nodes() const { return first_of_rank.back(); }
   int owner(int node) const;
 };
 
-/// One rank's part of an elimination: the dofs inside its domain, which no other domain touches,
-/// and after them the dofs of the interface that they touch.
+/// One rank's part of the elimination: first the dofs inside the domain, which no other domain
+/// touches, then the open dofs, which are the interface dofs that touch the domain.
 struct Domain
 {
-  std::vector<int> dof;  ///< whole dof by dof of the domain
-  int open = 0;          ///< how many of them belong to the interface
+  std::vector<int> dof;  ///< global dof of every dof of the domain
+  int open = 0;          ///< number of open dofs, which are the last ones
   SymmetricPattern pattern;
-  std::vector<int> order;  ///< dof of the domain at each place
+  std::vector<int> order;  ///< dof of the domain at each place of the elimination order
 };
 
-/// Where an entry of a domain's matrix comes from: a place in the blocks' values, or one of these.
+/// Source of the value of a domain's matrix entry. A number >= 0 is an index into the values of the
+/// whole matrix's blocks. Negative numbers have the meanings below.
 struct Source
 {
-  static constexpr long long nothing = -1;
-  /// Row sum of the interface: it keeps an open block positive definite, and is taken off again.
+  static constexpr long long nothing = -1;  ///< the value zero
+  /// Diagonal entry of an open dof: the sum of |A_ij| over its row of the interface. This entry
+  /// keeps the domain's matrix positive definite; it is subtracted after the elimination.
   static long long row_sum(int interface_dof) { return -2 - interface_dof; }
 };
 
-/// The elimination of the whole matrix shared out to the ranks. With one rank there is no
+/// The elimination of the whole matrix, distributed over the ranks. With one rank there is no
 /// interface.
 struct Dissection
 {
   std::vector<Domain> domain;                  ///< by rank
   std::vector<std::vector<long long>> source;  ///< by rank and entry of the domain's pattern
-  std::vector<int> interface;                  ///< whole dofs of the interface, ascending
+  std::vector<int> interface;                  ///< global dofs of the interface, ascending
+  /// Entry of the matrix between two interface dofs.
   struct InterfaceEntry
   {
-    int row, column;  ///< of the interface
-    std::size_t source;
+    int row, column;     ///< numbers of the interface dofs
+    std::size_t source;  ///< index into the values of the whole matrix's blocks
   };
   std::vector<InterfaceEntry> interface_entries;
-  int ordered_last = 0;  ///< nodes that were put last
-  double flops = 0.0;    ///< of all factors
+  int ordered_last = 0;  ///< number of nodes that are ordered last
+  double flops = 0.0;    ///< of all factors together; 0: not estimated
 };
 
-/// Shares the elimination out. The interface holds the nodes with a neighbour of a higher rank.
-/// Pinned nodes join it, or with one rank are put last, unless that makes it larger than
-/// `most_shared` or costs the factors more than a tenth. When it is larger without them, there are
-/// no domains.
+/// Distributes the elimination. The interface holds all nodes with a neighbour of a higher rank.
+/// The nodes `ordered_last` join the interface, or with one rank are eliminated last. They are
+/// ignored if they make the interface larger than `most_shared` or add more than 10 % to the flops.
+/// If the interface is larger than `most_shared` without them, the domains stay empty.
 Dissection dissect(const WholePattern& whole);
 
 }  // namespace trocar::solve

@@ -7,7 +7,7 @@
 namespace trocar::solve {
 namespace {
 
-constexpr std::size_t block_columns = 64;  ///< bounds the dense work space to 64 vectors
+constexpr std::size_t block_columns = 64;  ///< columns per solve, bounds the work space
 
 }  // namespace
 
@@ -133,7 +133,7 @@ void KspCompliance::build(const std::vector<int>& missing)
     C_.col(missing[k]) = read.col(c);
     C_.row(missing[k]) = read.col(c).transpose();
   }
-  // Round-off leaves the block among the new columns unsymmetric in the last digits.
+  // Rounding leaves the block of the new columns slightly unsymmetric.
   const core::MatX block = C_(missing, missing);
   C_(missing, missing) = 0.5 * (block + block.transpose());
 }

@@ -11,12 +11,12 @@
 
 namespace trocar::solve {
 
-/// How a compliance block was come by, in dofs.
+/// Work for one compliance block; columns are counted in dofs.
 struct ComplianceReport
 {
   int probes = 0;        ///< dofs in the block
   int built = 0;         ///< columns computed for it
-  int reused = 0;        ///< columns served from the cache
+  int reused = 0;        ///< columns taken from the cache
   double seconds = 0.0;  ///< this rank's wall time, factorisation excluded
 
   ComplianceReport& operator+=(const ComplianceReport& more)
@@ -31,19 +31,21 @@ struct ComplianceReport
 
 /// Which columns of the isolated compliance a step may use.
 enum class Reuse {
-  exact,  ///< those of its own operator, or laws repeated until they are met as with those
-  stale,  ///< those of a factor that some steps share, the needle paper's way
-  none    ///< all are built in every step
+  /// Columns of the step's own operator. Columns of an older factor serve only in iterations that
+  /// lead to the same answer (docs/theory.md, algorithm 8.3).
+  exact,
+  stale,  ///< columns of a factor that several steps share, as in the needle paper (algorithm 8.4)
+  none    ///< no columns of earlier steps: every step builds its own
 };
 
-/// The isolated compliance C = S A⁻¹ Sᵀ [m/N] on the probed dofs; S selects them. Dofs with a
-/// prescribed displacement are never probes: their rows and columns are zero.
+/// The isolated compliance C = S A⁻¹ Sᵀ [m/N]; S selects the probed dofs. Dofs with a prescribed
+/// displacement have zero rows and columns in C.
 class IsolatedCompliance
 {
  public:
   virtual ~IsolatedCompliance() = default;
-  /// C for these probes, equal on every rank. Columns of the current operator version that are
-  /// already known are not computed again. Collective.
+  /// C for these probes, equal on every rank. Columns that are known for the current version of the
+  /// operator are not computed again. Collective.
   virtual core::MatX block(const Probes& probes, ComplianceReport& report) = 0;
 };
 
@@ -53,17 +55,17 @@ enum class ColumnSolver {
   blocked      ///< provider `ksp_block`: KSPMatSolve on up to 64 columns
 };
 
-/// Columns by PETSc KSP on any rank count. Only C is kept, not A⁻¹Sᵀ: a new column read at the old
-/// probes gives, by symmetry, the old columns read at the new probe.
+/// Columns by PETSc KSP, on any number of ranks. Only C is kept, not A⁻¹Sᵀ. A new column read at
+/// the old probes also gives the old columns read at the new probe, because C is symmetric.
 class KspCompliance final : public IsolatedCompliance
 {
  public:
-  /// Borrows the system and the fixed set; both must outlive this object.
+  /// Borrows the system and the fixed dofs; both must outlive this object.
   KspCompliance(LinearSystem& system, const fem::Dirichlet& fixed, ColumnSolver solver,
                 core::Ledger& ledger);
 
   core::MatX block(const Probes& probes, ComplianceReport& report) override;
-  void forget();  ///< all columns
+  void forget();  ///< discards all columns
 
  private:
   struct Column
@@ -71,7 +73,7 @@ class KspCompliance final : public IsolatedCompliance
     int node = -1;  ///< file node, -1 for a wide probe
     int axis = 0;
     const DistributedFunctional* wide = nullptr;  ///< only valid while it is being built
-    bool fixed = false;                           ///< zero by definition, never solved for
+    bool fixed = false;                           ///< prescribed dof: the column is zero
   };
 
   std::vector<int> slots_of(const Probes& probes, std::vector<int>& missing);
@@ -90,7 +92,7 @@ class KspCompliance final : public IsolatedCompliance
   struct Wide
   {
     long long version;
-    OwnedField vector;  ///< a copy: old wide rows meet new columns
+    OwnedField vector;  ///< copy, because later columns are read at this probe too
   };
   std::map<long long, Wide> wides_;
   core::MatX C_;

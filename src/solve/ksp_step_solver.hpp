@@ -4,7 +4,8 @@
 
 namespace trocar::solve {
 
-/// Whole solves by PETSc, on any rank count.
+/// Step solver by PETSc KSP, on any number of ranks. `begin` solves for b; `finish` solves once
+/// more, for the forces on the probes. There are no half-sweeps.
 class KspStepSolver final : public StepSolver
 {
  public:

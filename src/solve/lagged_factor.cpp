@@ -5,7 +5,7 @@ namespace trocar::solve {
 Outcome<Done> LaggedFactor::make(const fem::BlockMatrix& values)
 {
   age_ = {};
-  try {  // solvers agree on their failures
+  try {  // a solver fails on all ranks or on none
     solver_->set_operator(values);
   } catch (const core::Failure& failure) {
     if (failure.code() != core::ExitCode::solver) throw;

@@ -12,36 +12,37 @@ namespace trocar::solve {
 using core::Done;
 using core::Outcome;
 
-/// What a factor has served since it was made.
+/// What a factor has been used for since it was made. A sweep is two half-sweeps.
 struct FactorAge
 {
-  bool lags = false;         ///< the operator has moved on
-  int uses = 0;              ///< linearisations
-  double sweeps = 0.0;       ///< they took in all
-  double last_sweeps = 0.0;  ///< and the last one
+  bool lags = false;         ///< the factor is that of an earlier operator
+  int uses = 0;              ///< linearisations that used the factor
+  double sweeps = 0.0;       ///< sweeps of these linearisations together
+  double last_sweeps = 0.0;  ///< sweeps of the last linearisation
 };
 
-/// A step solver whose factor may be that of an older operator (modified Newton). All solves leave
-/// out the fixed dofs. Collective but for what only tells.
+/// A step solver whose factor may be that of an older operator (modified Newton). Fixed dofs are
+/// cleared in right-hand sides and answers. Solving and factoring are collective.
 class LaggedFactor
 {
  public:
-  /// Borrows space and fixed set.
+  /// Borrows the space and the fixed dofs.
   LaggedFactor(std::unique_ptr<StepSolver> solver, const fem::Space& space,
                const fem::Dirichlet& fixed)
       : solver_(std::move(solver)), space_(&space), fixed_(&fixed)
   {
   }
 
-  /// Factors; refused where the operator is not positive definite, or does not fit in memory.
+  /// Factors the operator. Refused where it is not positive definite or does not fit in memory.
   Outcome<Done> make(const fem::BlockMatrix& values);
-  /// The operator has moved on, about by these rotations of the nodes, and the factor stays.
+  /// Keeps the factor for a new operator. R: rotations of the nodes (file order) that turn the
+  /// factored operator into about the new one.
   void keep(const std::vector<core::Mat3>& R);
-  /// Another linearisation has the same operator.
+  /// Counts another linearisation with the same operator.
   void serve_again();
-  /// A linearisation took this many sweeps.
+  /// Counts the sweeps that a linearisation took.
   void served(int sweeps);
-  /// Goes on counting from there.
+  /// Sets all counts; `lags` stays.
   void set_age(const FactorAge& age)
   {
     age_.uses = age.uses;
@@ -51,20 +52,21 @@ class LaggedFactor
 
   bool lags() const { return age_.lags; }
   const FactorAge& age() const { return age_; }
-  /// Made anew when the last linearisation took more sweeps than one does on average when the
-  /// factor's cost is shared by all that used it: from there on its share no longer falls.
+  /// True when a new factor pays: the last linearisation took more sweeps than the average cost per
+  /// linearisation (all sweeps and the factorisation, counted in sweeps, over the uses). From then
+  /// on keeping the factor would raise that average.
   bool worn() const;
-  /// Counts the factors made: compliance columns of one version belong together.
+  /// Number of factors made so far. Columns of different versions must not be mixed.
   int version() const { return version_; }
 
-  /// A⁻¹ b on its way, b [N].
+  /// Starts solving for A⁻¹ b, b [N].
   HalfSolution begin(const OwnedField& b);
   /// S A⁻¹ b [m] by slot of the probes.
   core::VecX read(const Probes& probes, const HalfSolution& half)
   {
     return solver_->at(probes, half);
   }
-  /// A⁻¹ (b + Sᵀ f) [m], f [N] by slot of the probes; without probes A⁻¹ b.
+  /// A⁻¹ (b + Sᵀ f) [m] from `begin(b)`, with f [N] by slot of the probes. Without probes A⁻¹ b.
   OwnedField finish(const HalfSolution& half, const Probes& probes, const core::VecX& f);
   OwnedField answer(const OwnedField& b) { return finish(begin(b), {}, {}); }
 

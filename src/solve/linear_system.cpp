@@ -5,7 +5,7 @@
 namespace trocar::solve {
 namespace {
 
-/// A borrowed array dressed as a PETSc vector.
+/// PETSc vector on a borrowed array.
 base::VecHandle wrap(const fem::Space& space, const double* values)
 {
   base::VecHandle vec;
@@ -47,7 +47,7 @@ LinearSystem::LinearSystem(const fem::Space& space, const fem::BlockPattern& pat
     create_solver();
   } catch (const core::Unsolved&) {
     throw;
-  } catch (const core::Failure& failure) {  // PETSc does not know a value
+  } catch (const core::Failure& failure) {  // an option has a value unknown to PETSc
     throw core::option_error("option -" + settings_.prefix + "…: " + failure.what());
   }
 }
@@ -96,7 +96,7 @@ void LinearSystem::create_solver()
   PCType pc_type = nullptr;
   TROCAR_PETSC(PCGetType(pc, &pc_type));
   const bool factored = is(pc_type, PCCHOLESKY) || is(pc_type, PCLU);
-  // Asking only for a preconditioner must not turn it into the whole solve.
+  // With KSPPREONLY one use of an approximate preconditioner would be the whole solve: take CG.
   if (is(type, KSPPREONLY) && !factored) {
     if (ksp_given)
       throw core::option_error("option -" + settings_.prefix + "ksp_type preonly: '" +
@@ -127,7 +127,7 @@ void LinearSystem::raise_mumps_workspace(PC pc)
   MatSolverType package = nullptr;
   TROCAR_PETSC(PCFactorGetMatSolverType(pc, &package));
   if (!is(package, MATSOLVERMUMPS)) return;
-  // Set the prefix before the factor is made, or MUMPS reads its options without it.
+  // The prefix must be set before the factor is made, else MUMPS reads options without the prefix.
   Mat matrix = needs_aij_ ? converted_.get() : assembled_.get();
   TROCAR_PETSC(MatSetOptionsPrefixFactor(matrix, settings_.prefix.c_str()));
   PetscBool given = PETSC_FALSE;
@@ -137,11 +137,11 @@ void LinearSystem::raise_mumps_workspace(PC pc)
   TROCAR_PETSC(PCFactorSetUpMatSolverType(pc));
   Mat factor = nullptr;
   TROCAR_PETSC(PCFactorGetMatrix(pc, &factor));
-  // Delayed pivots make MUMPS's own estimate too small now and then (its error -9).
+  // Delayed pivots sometimes make MUMPS's estimate of its workspace too small (MUMPS error -9).
   TROCAR_PETSC(MatMumpsSetIcntl(factor, 14, 60));
 }
 
-/// Puts values into the matrix; gives the one that is solved with.
+/// Puts the values into the PETSc matrix. Returns the matrix for the KSP: SBAIJ, or its AIJ copy.
 Mat LinearSystem::fill(const fem::BlockMatrix& values)
 {
   const fem::BlockPattern& pattern = values.pattern();
@@ -178,7 +178,7 @@ void LinearSystem::set_operator(const fem::BlockMatrix& values)
   TROCAR_PETSC(PCGetFailedReason(pc, &failed));
   const bool out = space_->comm().any(failed == PC_FACTOR_OUTMEMORY || failed == PC_FACTOR_OTHER);
   if (space_->comm().all(failed == PC_NOERROR)) return;
-  // What is left of the factor must not serve again: MUMPS would refuse it, others would not.
+  // The broken factor must not be used again. MUMPS would refuse; other packages would not.
   const std::string solver = describe();
   TROCAR_PETSC(KSPReset(ksp_.get()));
   fresh_ = true;
@@ -191,7 +191,8 @@ void LinearSystem::set_operator(const fem::BlockMatrix& values)
       "positive definite (are the supports sufficient?)");
 }
 
-/// PETSc's own conversion into a matrix that is there already writes past it on one rank.
+/// Updates the AIJ copy through a new matrix: on one rank PETSc's conversion into an existing
+/// matrix (MAT_REUSE_MATRIX) writes out of bounds.
 void LinearSystem::convert()
 {
   if (!converted_) {
@@ -204,7 +205,7 @@ void LinearSystem::convert()
   TROCAR_PETSC(MatCopy(fresh.get(), converted_.get(), SAME_NONZERO_PATTERN));
 }
 
-/// Factors, or sets up the preconditioner.
+/// Factors, or sets up the preconditioner. Failure (64) when PETSc cannot do so with these options.
 void LinearSystem::set_up()
 {
   const PetscErrorCode code = KSPSetUp(ksp_.get());
@@ -212,7 +213,7 @@ void LinearSystem::set_up()
     throw core::option_error("option -" + settings_.prefix + "pc_type: PETSc has no " + describe() +
                              " on " + std::to_string(space_->comm().size()) +
                              " ranks (bjacobi and asm take one for each rank)");
-  if (code != 0 && version_ == 0) {  // what is there already is good
+  if (code != 0 && version_ == 0) {  // later on the same options have worked before
     try {
       TROCAR_PETSC(code);
     } catch (const core::Failure& failure) {
@@ -248,7 +249,7 @@ OwnedField LinearSystem::solve(const OwnedField& b)
 core::MatX LinearSystem::solve_block(const core::MatX& rhs)
 {
   core::MatX x = core::MatX::Zero(rhs.rows(), rhs.cols());
-  if (!direct()) {  // KSPMatSolve would tell of the last column only whether it converged
+  if (!direct()) {  // KSPMatSolve reports the convergence of the last column only
     for (Eigen::Index k = 0; k < rhs.cols(); ++k) x.col(k) = solve({rhs.col(k)}).value;
     return x;
   }

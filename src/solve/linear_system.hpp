@@ -11,15 +11,16 @@ namespace trocar::solve {
 
 using fem::OwnedField;
 
-/// What to look up when the user asked for a solver on the command line (`-tissue_ksp_*`,
-/// `-tissue_pc_*`); defaults are one MUMPS Cholesky solve.
+/// Prefix of the PETSc options by which the user chooses a solver (`-tissue_ksp_*`,
+/// `-tissue_pc_*`). The default is one MUMPS Cholesky solve.
 struct LinearSettings
 {
   std::string prefix = "tissue_";
 };
 
-/// One symmetric positive definite operator A [N/m] on the tissue dofs, with its solver: PETSc
-/// matrix, KSP with prefix and near-null space. Prescribed dofs are identity rows scaled like A.
+/// A symmetric positive definite operator A [N/m] on the tissue dofs and its PETSc solver: matrix,
+/// KSP with option prefix, near-null space. The row of a prescribed dof is zero except for the
+/// diagonal entry of A.
 class LinearSystem
 {
  public:
@@ -28,24 +29,24 @@ class LinearSystem
                const std::vector<core::Vec3>& x, const LinearSettings& settings,
                core::Ledger& ledger);
 
-  /// Takes new values and factors (or sets up the preconditioner). A singular operator is a
-  /// Failure (70). Starts a new version. Collective.
+  /// Takes new values and factors (or sets up the preconditioner). Starts a new version. Failure
+  /// (70) for a singular operator, (64) for a solver that PETSc does not have. Collective.
   void set_operator(const fem::BlockMatrix& values);
 
-  /// A⁻¹ b [m]; b in newtons, zero or the scaled prescribed value on fixed dofs. Unsolved (70) when
-  /// the Krylov solver does not converge. Collective.
+  /// A⁻¹ b [m]; b [N] is zero, or the prescribed value times the diagonal, on fixed dofs. Unsolved
+  /// (70) when the Krylov solver does not converge. Collective.
   OwnedField solve(const OwnedField& b);
 
-  /// The columns A⁻¹ e for `rhs` columns held as (owned dofs x k). Collective.
+  /// A⁻¹ rhs [m] for k right-hand sides [N]; `rhs` is (owned dofs x k). Collective.
   core::MatX solve_block(const core::MatX& rhs);
 
-  /// Counts the operators this object has held: a cached column is exact iff its version is this.
+  /// Number of operators set so far. A cached column is exact only if it was made in this version.
   int version() const { return version_; }
   const fem::Space& space() const { return *space_; }
 
-  /// "preonly + cholesky (mumps)": for the log and the record.
+  /// Name of the solver for log and results, such as "preonly + cholesky (mumps)".
   std::string describe() const;
-  /// True when the solve is a direct one. Collective.
+  /// True for a direct solver. Collective.
   bool direct() const;
 
  private:
@@ -67,7 +68,7 @@ class LinearSystem
   base::NullSpaceHandle rigid_modes_;
   std::vector<core::Vec3> x_owned_;
   bool needs_aij_ = false;
-  bool fresh_ = true;  ///< nothing is factored, or what was has failed
+  bool fresh_ = true;  ///< no factor yet, or the last factorisation failed
   int version_ = 0;
 };
 

@@ -7,38 +7,39 @@
 
 namespace trocar::solve {
 
-/// The tissue's equations about one place,  A Δu = r + Hᵀλ  for the way Δu from `base`, with a
-/// factor to solve them by: of A itself, or of an older operator or without the stiffness of loads
-/// that follow the tissue.
+/// The tissue's equations linearised at one displacement:  A Δu = r + Hᵀλ,  with Δu counted from
+/// `base`. `factor` may be lagged: the factor of an older operator, or one without the
+/// stiffness of loads that follow the tissue.
 struct Linearisation
 {
-  OwnedField iterate;                 ///< the place; gaps of rows are measured from there [m]
-  OwnedField base;                    ///< the same with prescribed displacements [m]
-  OwnedField residual;                ///< r, zero on fixed dofs [N]
-  std::optional<OwnedField> guess{};  ///< a first Δu for iterations: where the velocity leads [m]
-  double least = 0.0;                 ///< norm of a rest that need not be balanced any further [N]
-  bool loads_follow = false;          ///< A is not positive definite for certain
-  /// A d [N]. Collective.
+  OwnedField iterate;   ///< displacement where equations and gaps of rows are evaluated [m]
+  OwnedField base;      ///< `iterate` with the prescribed displacements of the step's end [m]
+  OwnedField residual;  ///< r, zero on fixed dofs [N]
+  std::optional<OwnedField> guess{};  ///< first Δu of iterations: h times velocity [m]
+  double least = 0.0;         ///< residual norm at rounding level; iterations stop there [N]
+  bool loads_follow = false;  ///< loads follow the tissue, so A may be indefinite
+  /// Product A d [N] for d [m]. Collective.
   std::function<OwnedField(const OwnedField&)> product{};
   LaggedFactor* factor = nullptr;
-  /// Makes the factor of A as far as it is the tissue's. Collective.
+  /// Factors A anew, without the stiffness of loads that follow the tissue. Collective.
   std::function<Outcome<Done>()> refactor{};
-  std::optional<HalfSolution> half{};  ///< of A⁻¹ r, once it was asked for
+  std::optional<HalfSolution> half{};  ///< forward half of A⁻¹ r, once `forward` was called
 
-  /// The factor is not that of A.
+  /// True when the factor is not that of A.
   bool lagged() const { return factor->lags() || loads_follow; }
   const fem::Space& space() const { return factor->space(); }
-  /// A⁻¹ r on its way, with the factor as it is. Collective.
+  /// Forward half of A⁻¹ r with the present factor, computed once. Collective.
   const HalfSolution& forward()
   {
     if (!half) half = factor->begin(residual);
     return *half;
   }
-  /// The place without rows, where the factor is that of A. Collective.
+  /// Solution without rows, base + A⁻¹ r [m]. Needs a factor that is not lagged. Collective.
   OwnedField alone() { return {base.value + factor->finish(forward(), {}, {}).value}; }
 };
 
-/// What a linear solver says when it stops short (`Unsolved`) as an outcome. Collective.
+/// Runs `work` and returns its outcome. Where a linear solver misses its tolerance (`Unsolved`),
+/// returns a refusal with the solver's message. Collective.
 template <class Work>
 auto attempted(const Work& work) -> decltype(work())
 {

@@ -8,8 +8,8 @@ namespace trocar::solve {
 
 using fem::OwnedField;
 
-/// A probe that touches many dofs, such as the volume gradient of a cavity. Its column is kept
-/// until one of the same `id` comes with another `version`.
+/// A wide probe: a functional of many dofs, such as the volume gradient of a cavity. Its compliance
+/// column is kept until a functional with the same `id` has another `version`.
 struct DistributedFunctional
 {
   long long id;
@@ -17,8 +17,8 @@ struct DistributedFunctional
   long long version = 0;
 };
 
-/// What a constraint set asks for: whole nodes (three unit dofs each, file numbering, sorted and
-/// unique) and wide vectors. Slots are 3 * nodes, then the wide ones.
+/// The probes of a set of rows: nodes with all three dofs (file numbering, sorted, unique), and
+/// wide probes. Slots: the dofs of the nodes (3 per node), then the wide probes.
 struct Probes
 {
   std::vector<int> nodes;
@@ -27,11 +27,11 @@ struct Probes
   int size() const { return static_cast<int>(3 * nodes.size() + wide.size()); }
 };
 
-/// Sᵀ f: nodal forces [N] of the owned nodes from f [N] by slot of the probes; fixed dofs get
-/// theirs as well. Not collective.
+/// Sᵀ f: forces on the owned nodes [N] from f [N] by slot of the probes. Forces on fixed dofs are
+/// not cleared. Not collective.
 OwnedField spread(const Probes& probes, const core::VecX& f, const fem::Space& space);
 
-/// S u by slot of the probes, equal on every rank. Collective.
+/// S u [m] by slot of the probes, equal on every rank. Collective.
 core::VecX read(const Probes& probes, const OwnedField& u, const fem::Space& space);
 
 }  // namespace trocar::solve

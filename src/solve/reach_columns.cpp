@@ -8,19 +8,19 @@ namespace trocar::solve {
 using core::MatX;
 using core::VecX;
 
-/// Unit columns that are eliminated together, sorted by position: those that are not zero in a
-/// supernode are then neighbours, because the tree is in postorder.
+/// Unit columns that are eliminated together, sorted by position. Because the elimination tree is
+/// in postorder, the columns that are nonzero ("active") in one supernode are then contiguous.
 struct ReachColumns::Batch
 {
-  std::vector<int> position, slot;
-  std::vector<int> reach;  ///< supernodes on the paths to the root, ascending
-  std::vector<int> place;  ///< in `reach`, by supernode; -1 elsewhere
-  std::vector<int> low;    ///< first active column, by place
-  std::vector<int> high;   ///< one past the last
-  std::vector<MatX> Y;     ///< (columns of the supernode x active columns), by place
-  MatX gram;               ///< Xᵀ X of the batch, lower triangle
-  MatX cross;              ///< Xᵀ X with the slots there before (columns x slots)
-  MatX rest;               ///< what is left at the open places (open x columns)
+  std::vector<int> position, slot;  ///< by column
+  std::vector<int> reach;           ///< supernodes on the paths to the root, ascending
+  std::vector<int> place;           ///< by supernode: its place in `reach`, or -1
+  std::vector<int> low;             ///< by place in `reach`: first active column
+  std::vector<int> high;            ///< by place in `reach`: one past the last active column
+  std::vector<MatX> Y;              ///< by place: (columns of the supernode x active columns)
+  MatX gram;                        ///< Xᵀ X of the batch, lower triangle
+  MatX cross;                       ///< Xᵀ X of the batch with earlier slots (columns x slots)
+  MatX rest;                        ///< residual of the columns at open places (open x columns)
 };
 
 ReachColumns::ReachColumns(const SupernodalFactor& factor) : factor_(&factor)
@@ -52,7 +52,7 @@ void ReachColumns::enlarge(int count)
   C_.conservativeResizeLike(MatX::Zero(room, room));
 }
 
-/// Keeps Y as columns of X in one supernode.
+/// Appends Y, the values of new slots in supernode s, to X.
 void ReachColumns::append(int s, const MatX& Y, const int* slots)
 {
   Piece& piece = pieces_[static_cast<std::size_t>(s)];
@@ -61,9 +61,10 @@ void ReachColumns::append(int s, const MatX& Y, const int* slots)
   piece.slot.insert(piece.slot.end(), slots, slots + Y.cols());
 }
 
-/// Rows begin … end of Y <- L⁻¹ Y with the diagonal block of a supernode. Halves the rows, because
-/// products run several times faster than triangular solves. Skips columns that are still zero:
-/// columns are sorted by position, so those stand at the end.
+/// Solves for rows begin … end of Y <- L⁻¹ Y, with L the diagonal block of a supernode. Recursion
+/// on halves of the rows turns most of the work into matrix products, which run several times
+/// faster than triangular solves. A column is zero above its unit entry. Columns are sorted by
+/// position, so the columns that are still zero come last and are skipped.
 void ReachColumns::solve_rows(const SupernodalFactor::Supernode& node, int begin, int end,
                               const int* first_position, const int* last_position, MatX& Y)
 {
@@ -90,7 +91,8 @@ void ReachColumns::solve_rows(const SupernodalFactor::Supernode& node, int begin
   solve_rows(node, middle, end, first_position, last_position, Y);
 }
 
-/// One supernode of a batch: solve with its diagonal block, update its ancestors, multiply.
+/// Eliminates supernode s for a batch: solves with the diagonal block, updates the ancestors, adds
+/// the products of this supernode to Xᵀ X.
 void ReachColumns::eliminate(int s, Batch& batch)
 {
   const SupernodalFactor::Supernode node = factor_->supernode(s);
@@ -105,7 +107,7 @@ void ReachColumns::eliminate(int s, Batch& batch)
   const int* row = node.row + node.columns;
   for (int i = 0; i < node.below();) {
     const int t = factor_->supernode_at(row[i]);
-    if (t < 0) {  // open places, and no others after them
+    if (t < 0) {  // open places, as are all rows after this one
       for (; i < node.below(); ++i)
         batch.rest.row(row[i] - factor_->closed()).segment(low, active) -= update.row(i);
       break;
@@ -145,7 +147,8 @@ void ReachColumns::settle(const Batch& batch)
   }
 }
 
-/// Reach of a batch, the columns active in each of its supernodes, and its right-hand sides.
+/// Finds the supernodes that a batch reaches and the active columns of each, and sets the unit
+/// right-hand sides.
 void ReachColumns::plan(Batch& batch) const
 {
   batch.place.assign(static_cast<std::size_t>(factor_->supernodes()), -1);

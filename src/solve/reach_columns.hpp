@@ -7,32 +7,34 @@
 
 namespace trocar::solve {
 
-/// X = L⁻¹ Sᵀ by supernode, only where it is not zero, and C = Xᵀ X = S A⁻¹ Sᵀ. A unit column is
-/// not zero on the path from its place to the root of the elimination tree alone, so that a new one
-/// costs that path, and C needs no backward sweep. Slots are numbered as they are added. Serial.
+/// The nonzero parts of X = L⁻¹ Sᵀ by supernode, and C = Xᵀ X = S A⁻¹ Sᵀ. The column of a unit
+/// vector is nonzero only on the path from its position to the root of the elimination tree. So a
+/// new column costs only that path, and C needs no backward half-sweep. Every column has a slot,
+/// numbered in the order of adding. Serial.
 class ReachColumns
 {
  public:
   explicit ReachColumns(const SupernodalFactor& factor);
 
-  /// Forgets everything: the factor is another one.
+  /// Discards all columns, as after a new factorisation.
   void clear();
 
-  /// Adds unit vectors at these closed positions; -1 makes a column of zeros. Their slots follow
-  /// on. Gives what they leave at the open places (open x positions).
+  /// Adds a column for the unit vector at each of these closed positions; -1 adds a column of
+  /// zeros. They get the next slots. Returns the residuals at the open places after the forward
+  /// half-sweep (open x positions).
   core::MatX add_units(const std::vector<int>& positions);
 
-  /// C of these slots.
+  /// C restricted to these slots.
   core::MatX block(const std::vector<int>& slots) const { return C_(slots, slots); }
   core::VecX at(const core::VecX& y) const;             ///< Xᵀ y, by slot
   void push(const core::VecX& f, core::VecX& y) const;  ///< y += X f, f by slot
 
  private:
-  /// The columns of X in one supernode.
+  /// The rows of X that belong to one supernode.
   struct Piece
   {
     std::vector<double> value;  ///< (columns of the supernode x slots), column-major
-    std::vector<int> slot;
+    std::vector<int> slot;      ///< slots with a nonzero column here
   };
   struct Batch;
 
@@ -48,7 +50,7 @@ class ReachColumns
   const SupernodalFactor* factor_;
   std::vector<Piece> pieces_;  ///< by supernode
   std::vector<int> touched_;   ///< supernodes with columns, ascending
-  core::MatX C_;               ///< with room to grow
+  core::MatX C_;               ///< of all slots, inside a larger matrix that leaves room to grow
   int size_ = 0;
 };
 

@@ -9,9 +9,9 @@
 namespace trocar::solve {
 namespace {
 
-constexpr double part_of_memory = 0.7;  ///< what a factor may take of what is free
+constexpr double part_of_memory = 0.7;  ///< largest part of the free memory for solving
 
-/// Memory that this machine has to give [B]; 0 when it does not say.
+/// Available memory of this machine [B]; 0 when it is unknown.
 double available_memory()
 {
   std::ifstream info("/proc/meminfo");
@@ -38,7 +38,7 @@ std::unique_ptr<StepSolver> make_step_solver(Provider provider, const StepSolver
   std::unique_ptr<SupernodalStepSolver> solver;
   try {
     solver = std::make_unique<SupernodalStepSolver>(parts, most_shared);
-  } catch (const core::Failure& failure) {  // on every rank
+  } catch (const core::Failure& failure) {  // all ranks throw alike
     if (!free_to_choose || failure.code() != core::ExitCode::solver) throw;
     return std::make_unique<KspStepSolver>(parts, ColumnSolver::blocked,
                                            std::string(", because ") + failure.what());

@@ -8,26 +8,28 @@
 
 namespace trocar::solve {
 
-/// How the tissue's operator is solved with and its isolated compliance made.
+/// Solver for the tissue's operator and its isolated compliance.
 enum class Provider {
-  automatic,  ///< `supernodal` when its factor fits in memory and no PETSc solver was asked for
+  /// `supernodal` when its factor fits in memory and its interface is not too large, else
+  /// `ksp_block`. The driver takes `ksp` instead when the user gave PETSc solver options.
+  automatic,
   supernodal,
   ksp,       ///< one PETSc solve per isolated dof, the paper's route
-  ksp_block  ///< PETSc solves with many right-hand sides
+  ksp_block  ///< PETSc solves for up to 64 right-hand sides at a time
 };
 
-/// A⁻¹ b on its way: with a factor only the forward half is done, so that the forces of the
-/// constraints can join before the backward half.
+/// An unfinished solution of A u = b. With a supernodal factor only the forward half-sweep is done,
+/// so that constraint forces can be added before the backward half-sweep. With PETSc it is A⁻¹ b.
 struct HalfSolution
 {
   core::VecX value{};
   core::VecX interface {
-  };  ///< on rank 0: the same on dofs that ranks share
+  };  ///< the same on the interface dofs, on rank 0
 };
 
-/// One operator of the tissue in the order of a step: solve b, read the answer at the probes, get
-/// the compliance of the probes, finish with forces on them. All calls are collective; all answers
-/// but fields are equal on every rank.
+/// Solver for one operator A of the tissue. A step first begins with b, then reads A⁻¹ b at the
+/// probes, gets the compliance of the probes, and finishes with the forces on the probes. All calls
+/// are collective. Results other than fields are equal on every rank.
 class StepSolver
 {
  public:
@@ -35,27 +37,27 @@ class StepSolver
 
   /// Takes new values and factors. Failure (70) for an operator that is not positive definite.
   virtual void set_operator(const fem::BlockMatrix& values) = 0;
-  /// b [N], zero on fixed dofs.
+  /// Starts solving A u = b, with b [N] zero on fixed dofs.
   virtual HalfSolution begin(const OwnedField& b) = 0;
   /// S A⁻¹ b [m] by slot of the probes; 0 on fixed dofs.
   virtual core::VecX at(const Probes& probes, const HalfSolution& half) = 0;
-  /// A⁻¹ (b + Sᵀ f) [m], f [N] by slot of the probes. No probes: A⁻¹ b.
+  /// A⁻¹ (b + Sᵀ f) [m], f [N] by slot of the probes. Without probes A⁻¹ b.
   virtual OwnedField finish(const HalfSolution& half, const Probes& probes,
                             const core::VecX& f) = 0;
   virtual IsolatedCompliance& compliance() = 0;
-  /// The operator has become about R A Rᵀ, R the rotations of the nodes in file order: from now on
-  /// every answer is R A⁻¹ Rᵀ with the factor as it is. Only for solvers that can.
+  /// For an operator that has become about R A Rᵀ, with R the rotations of the nodes in file order.
+  /// From now on every answer uses R A⁻¹ Rᵀ with the present factor of A. Only where `can_turn`.
   virtual void turn(const std::vector<core::Mat3>& /*R*/) {}
   virtual bool can_turn() const { return false; }
-  /// About how many sweeps cost as much as a factorisation, by counts of their work.
+  /// Cost of a factorisation in sweeps, estimated from operation counts.
   virtual double sweeps_per_factor() const { return 0.0; }
-  /// Memory of a factor of our own [B], 0 when PETSc keeps it.
+  /// Memory of the factor [B]; 0 when PETSc holds the factor.
   virtual double factor_bytes() const { return 0.0; }
-  /// What solving will take in all, estimated from the analysis [B]; 0 when PETSc does it.
+  /// Total memory of solving, estimated from the analysis [B]; 0 when PETSc solves.
   virtual double memory_bytes() const { return 0.0; }
-  /// Dofs between the domains of the ranks, which one of them eliminates.
+  /// Number of interface dofs between the domains of the ranks. Rank 0 eliminates them.
   virtual int shared_dofs() const { return 0; }
-  /// For the log and the record.
+  /// Name of the solver for log and results, with the reason for a fallback.
   virtual std::string describe() const = 0;
 };
 
@@ -66,12 +68,12 @@ struct StepSolverParts
   const fem::BlockPattern& pattern;
   const fem::Dirichlet& fixed;
   const std::vector<core::Vec3>& x;  ///< reference positions of all nodes in file order [m]
-  /// File nodes that will be probed: put last in the factor, where their columns cost next to
-  /// nothing.
+  /// File nodes that rows are expected to touch. They are eliminated last, so that their
+  /// compliance columns cost next to nothing.
   const std::vector<int>& ordered_last;
-  bool reuse;          ///< keep columns from step to step while the operator stays
-  double most_memory;  ///< that solving ourselves may take [B], 0: a part of what is free
-  bool turns;          ///< the operator turns: a copy of the factor in single precision as well
+  bool reuse;          ///< keep columns from step to step while the operator is the same
+  double most_memory;  ///< most memory for `supernodal` [B]; 0: part of the free memory
+  bool turns;          ///< the operator turns: count a copy of the factor in single precision
   LinearSettings linear;
   core::Ledger& ledger;
 };

@@ -9,7 +9,7 @@
 
 namespace trocar::solve {
 
-/// CHOLMOD's objects, freed in the right order.
+/// CHOLMOD's objects. The destructor frees them in the order that CHOLMOD requires.
 struct SupernodalFactor::Handles
 {
   Handles() { cholmod_start(&common); }
@@ -103,7 +103,7 @@ double SupernodalFactor::all_bytes() const
   const cholmod_factor& L = *handles_->L;
   const double index = sizeof(int);
   const double structure = index * static_cast<double>(L.ssize + 2 * L.n + at_.size() + L.n);
-  // CHOLMOD factors a lower copy of the upper triangle it is given.
+  // Twice the matrix: CHOLMOD makes a lower-triangle copy of the given upper triangle.
   const double matrix = 2.0 * (8.0 + index) * static_cast<double>(handles_->A->nzmax);
   return bytes() + 8.0 * static_cast<double>(L.maxcsize) + matrix + structure;
 }
@@ -115,7 +115,7 @@ double SupernodalFactor::flops() const
 
 SupernodalFactor::Supernode SupernodalFactor::supernode(int s) const
 {
-  // One that closed and open places share ends where the open ones begin.
+  // A supernode with closed and open columns is cut where the open columns begin.
   Supernode node = whole_supernode(s);
   node.columns = std::min(node.columns, closed_ - node.first);
   return node;

@@ -7,23 +7,26 @@
 
 namespace trocar::solve {
 
-/// Upper triangle of a symmetric matrix by compressed columns, rows ascending.
+/// Pattern of the upper triangle of a symmetric matrix, in compressed columns with ascending rows.
 struct SymmetricPattern
 {
-  std::vector<int> start;  ///< by column, one more than columns
-  std::vector<int> row;
+  std::vector<int> start;  ///< first entry of every column, then the number of entries
+  std::vector<int> row;    ///< by entry
 
   int size() const { return static_cast<int>(start.size()) - 1; }
 };
 
-/// A = L Lᵀ by supernodes (CHOLMOD), and the sweeps and the structure that isolated compliance
-/// needs. "Position" is a place in the factor's own order. Serial.
+/// Supernodal Cholesky factor A = L Lᵀ (CHOLMOD), with half-sweeps and with the structure of L that
+/// the isolated compliance needs. A "position" is the place of a dof in the factor's own
+/// elimination order. Serial.
 class SupernodalFactor
 {
  public:
-  /// Analyses the pattern in the given order (dof at each place). The last `open` places, which
-  /// must be coupled with each other and with all that stands before, are not eliminated: sweeps
-  /// leave there what the others pass on. Failure (70) when it does not fit in memory.
+  /// Analyses the pattern for the given elimination order (dof at each place). The last `open`
+  /// places are not eliminated; the others are "closed". In the pattern all open places must be
+  /// coupled with each other, and each connected part of the closed places must be coupled with an
+  /// open place. Only then CHOLMOD's postorder keeps the open places last. Failure (70) when the
+  /// factor does not fit in memory.
   SupernodalFactor(const SymmetricPattern& pattern, const std::vector<int>& order, int open = 0);
   ~SupernodalFactor();
   SupernodalFactor(SupernodalFactor&&) noexcept;
@@ -35,37 +38,39 @@ class SupernodalFactor
 
   int position(int dof) const { return position_[static_cast<std::size_t>(dof)]; }
   int size() const { return static_cast<int>(position_.size()); }
-  int closed() const { return closed_; }  ///< places that are eliminated, the first ones
-  /// What is left of A on the open places (open x open), by place.
+  int closed() const { return closed_; }  ///< number of eliminated places, which come first
+  /// Schur complement of A on the open places (open x open), in the order of their positions.
   core::MatX open_block() const;
-  double bytes() const;      ///< of L [B], known from the analysis
-  double all_bytes() const;  ///< with the matrix and what factoring needs [B]
+  double bytes() const;      ///< memory of L [B], known from the analysis
+  double all_bytes() const;  ///< memory of L, the matrix and CHOLMOD's work space [B]
   double flops() const;      ///< of one factorisation
 
-  /// One supernode: its dense columns of L, diagonal block first, and the positions of its rows.
+  /// One supernode: a dense block of columns of L, diagonal block on top, and its rows' positions.
   struct Supernode
   {
-    int first;    ///< position of its first column
-    int columns;  ///< as many rows are in the diagonal block
-    int rows;     ///< all of them
-    const int* row;
+    int first;        ///< position of its first column
+    int columns;      ///< number of columns, and of rows in the diagonal block
+    int rows;         ///< number of rows, diagonal block included
+    const int* row;   ///< position of every row
     const double* L;  ///< (rows x columns), column-major
-    std::size_t at;   ///< where it begins in all values of L
+    std::size_t at;   ///< offset of `L` in the values of the whole factor
 
     int below() const { return rows - columns; }
     Eigen::Map<const core::MatX> block() const { return {L, rows, columns}; }
   };
   int supernodes() const { return supernodes_; }
   Supernode supernode(int s) const;
-  /// -1 at open places.
+  /// The supernode that has this position as a column; -1 for open places.
   int supernode_at(int position) const { return at_[static_cast<std::size_t>(position)]; }
-  /// The supernode that this one's update goes to first, -1 for a root and for open places.
+  /// Parent in the elimination tree; -1 for a root, or where the parent is an open place.
   int parent(int s) const { return parent_[static_cast<std::size_t>(s)]; }
 
-  void forward(core::VecX& b) const;   ///< b <- L⁻¹ b, by position
-  void backward(core::VecX& y) const;  ///< y <- L⁻ᵀ y, by position
-  /// The same to single precision from a copy of L that takes half as long to read; the copy is
-  /// made on first use.
+  /// b <- L⁻¹ b, by position. Open places get the residual: b less the terms of the closed places.
+  void forward(core::VecX& b) const;
+  /// y <- L⁻ᵀ y, by position; open places hold the solution already.
+  void backward(core::VecX& y) const;
+  /// The same half-sweeps with a copy of L in single precision, which takes half as long to read.
+  /// The copy is made on first use.
   void forward_single(core::VecX& b);
   void backward_single(core::VecX& y);
 
@@ -76,11 +81,11 @@ class SupernodalFactor
   struct Handles;
   std::unique_ptr<Handles> handles_;
   int closed_ = 0;
-  int supernodes_ = 0;         ///< that begin before the open places
-  std::vector<int> position_;  ///< by dof
+  int supernodes_ = 0;         ///< number of supernodes with a closed column
+  std::vector<int> position_;  ///< position by dof
   std::vector<int> at_;        ///< supernode by position
-  std::vector<int> parent_;
-  std::vector<float> single_;  ///< values of L; empty until asked for
+  std::vector<int> parent_;    ///< by supernode, see `parent`
+  std::vector<float> single_;  ///< L in single precision; empty until first use
 };
 
 }  // namespace trocar::solve

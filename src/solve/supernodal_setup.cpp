@@ -4,15 +4,16 @@
 
 #include "solve/supernodal_step_solver.hpp"
 
-// How the elimination is shared out, and how the operator's values reach those who factor them.
+// Setup of the step solver: distributes the elimination over the ranks, and sends the values of the
+// operator to the ranks that factor them.
 namespace trocar::solve {
 namespace {
 
-// A core of today, to weigh a factorisation against sweeps without a clock: what is decided must
-// not depend on what else the machine does.
+// Speed of a present-day core, for comparing the cost of a factorisation with that of sweeps. No
+// times are measured, because decisions must not depend on the load of the machine.
 constexpr double product_rate = 5e10;  ///< [flop/s]
 constexpr double read_rate = 2e10;     ///< [B/s]
-constexpr double least_worth = 20.0;   ///< in sweeps: small factors run far below the rates
+constexpr double least_worth = 20.0;   ///< in sweeps: small factors do not reach these rates
 
 template <class T>
 MPI_Datatype type_of();
@@ -44,7 +45,7 @@ void receive(std::vector<T>& values, int rank, MPI_Comm comm)
   TROCAR_MPI(MPI_Recv(values.data(), count, type_of<T>(), rank, 0, comm, MPI_STATUS_IGNORE));
 }
 
-/// The parts of a domain that travel.
+/// The lists of a domain that rank 0 sends to the domain's rank.
 std::array<std::vector<int>*, 4> parts_of(Domain& domain)
 {
   return {&domain.dof, &domain.pattern.start, &domain.pattern.row, &domain.order};
@@ -102,7 +103,7 @@ WholePattern SupernodalStepSolver::gather_pattern(const StepSolverParts& parts)
   return whole;
 }
 
-/// Every rank gets its domain.
+/// Sends every rank its domain, and returns this rank's.
 Domain SupernodalStepSolver::hand_out(Dissection& dissection)
 {
   const base::Comm& comm = space_->comm();
@@ -137,7 +138,8 @@ Domain SupernodalStepSolver::hand_out(Dissection& dissection)
   return domain;
 }
 
-/// Memory of all parts, and what a factorisation costs in sweeps on the rank with most to do.
+/// Estimates the memory of all ranks, and the cost of a factorisation in sweeps. That cost is the
+/// largest of all ranks.
 void SupernodalStepSolver::weigh(bool turns)
 {
   const double n = static_cast<double>(interface_.size());
@@ -145,13 +147,13 @@ void SupernodalStepSolver::weigh(bool turns)
   double flops = factor_ ? factor_->flops() : 0.0;
   const double open = static_cast<double>(open_.size());
   double memory = factor_ ? factor_->all_bytes() + (turns ? 0.5 * bytes : 0.0) : 0.0;
-  memory += 24.0 * open * open;  // what is left there, its factor, and a copy to send
+  memory += 24.0 * open * open;  // open block, its factor, and a copy to send
   if (space_->comm().root()) {
     bytes += 8.0 * n * n;
     flops += n * n * n / 3.0;
-    memory += 16.0 * n * n;  // with the share of a domain
+    memory += 16.0 * n * n;  // interface block, and the received share of a domain
     if (space_->comm().size() > 1) memory += 8.0 * static_cast<double>(value_start_.back());
-    for (const std::vector<long long>& source : sources_)  // with the values sent from here
+    for (const std::vector<long long>& source : sources_)  // sources, and the values to send
       memory += 16.0 * static_cast<double>(source.size());
   }
   const double worth = bytes > 0.0 ? flops / product_rate / (2.0 * bytes / read_rate) : 0.0;
@@ -179,7 +181,7 @@ void SupernodalStepSolver::set_operator(const fem::BlockMatrix& values)
   ++ledger_->factorisations;
 }
 
-/// All blocks on rank 0.
+/// The values of all ranks' blocks on rank 0; nothing elsewhere.
 std::vector<double> SupernodalStepSolver::gather_values(const fem::BlockMatrix& values) const
 {
   const base::Comm& comm = space_->comm();
@@ -191,7 +193,7 @@ std::vector<double> SupernodalStepSolver::gather_values(const fem::BlockMatrix& 
   return all;
 }
 
-/// A on the interface, on rank 0.
+/// The entries of A between interface dofs, as a dense matrix on rank 0; empty elsewhere.
 core::MatX SupernodalStepSolver::interface_of(const std::vector<double>& values) const
 {
   if (!space_->comm().root()) return {};
@@ -202,7 +204,8 @@ core::MatX SupernodalStepSolver::interface_of(const std::vector<double>& values)
   return interface;
 }
 
-/// Rank 0 gives every rank the entries of its domain.
+/// The values of this rank's domain entries, which rank 0 sends. `sums`: row sums of |A| on the
+/// interface, on rank 0.
 std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<double>& values,
                                                          const core::VecX& sums) const
 {
@@ -212,7 +215,7 @@ std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<doubl
     receive(entries, 0, comm.get());
     return entries;
   }
-  for (int rank = comm.size() - 1; rank >= 0; --rank) {  // its own ones last
+  for (int rank = comm.size() - 1; rank >= 0; --rank) {  // rank 0 comes last and keeps its own
     const std::vector<long long>& source = sources_[static_cast<std::size_t>(rank)];
     entries.resize(source.size());
     for (std::size_t k = 0; k < source.size(); ++k) {
@@ -228,12 +231,13 @@ std::vector<double> SupernodalStepSolver::entries_for_me(const std::vector<doubl
   return entries;
 }
 
-/// Takes off the interface, in the order of the ranks, what the domains take off it.
+/// Makes the Schur complement on rank 0: adds the shares of the domains to the interface block, in
+/// rank order, and subtracts the `sums` that were put on the diagonals of open dofs.
 void SupernodalStepSolver::gather_open_blocks(const core::VecX& sums, core::MatX& interface) const
 {
   const base::Comm& comm = space_->comm();
   std::vector<double> mine;
-  std::vector<int> places;  // of the open dofs in the order of the factor
+  std::vector<int> places;  // interface dof of every open place, in factor order
   if (factor_ && !open_.empty()) {
     const core::MatX left = factor_->open_block();
     mine.assign(left.data(), left.data() + left.size());

@@ -19,7 +19,7 @@ void SupernodalStepSolver::forget_columns()
 void SupernodalStepSolver::turn(const std::vector<core::Mat3>& R)
 {
   R_ = R;
-  wides_.clear();  // columns of single nodes turn with them; those of wide vectors do not
+  wides_.clear();  // columns of wide probes cannot be turned and are made anew
 }
 
 OwnedField SupernodalStepSolver::turned_back(const OwnedField& field) const
@@ -31,7 +31,7 @@ OwnedField SupernodalStepSolver::turned_back(const OwnedField& field) const
   return back;
 }
 
-/// The field on the domain's dofs by place, zero on the open ones.
+/// The field by position of the domain's factor; zero on the open places.
 core::VecX SupernodalStepSolver::mine(const OwnedField& field) const
 {
   core::VecX y = core::VecX::Zero(factor_ ? factor_->size() : 0);
@@ -41,7 +41,7 @@ core::VecX SupernodalStepSolver::mine(const OwnedField& field) const
   return y;
 }
 
-/// This rank's share of the field on the interface.
+/// The field on the interface dofs that this rank owns; zero on the others.
 core::VecX SupernodalStepSolver::interface_part(const OwnedField& field) const
 {
   core::VecX interface = core::VecX::Zero(static_cast<Eigen::Index>(interface_.size()));
@@ -52,7 +52,7 @@ core::VecX SupernodalStepSolver::interface_part(const OwnedField& field) const
   return interface;
 }
 
-/// Adds what a forward sweep left at the open places.
+/// Adds the residual of a forward half-sweep at the open places to the interface vector.
 void SupernodalStepSolver::add_left_over(const core::VecX& y, core::VecX& interface) const
 {
   for (std::size_t k = 0; k < open_.size(); ++k)
@@ -75,7 +75,7 @@ HalfSolution SupernodalStepSolver::begin(const OwnedField& b)
   return forward(b, !R_.empty());
 }
 
-/// L⁻¹ Rᵀ b.
+/// L⁻¹ Rᵀ b, in single precision if asked for.
 HalfSolution SupernodalStepSolver::forward(const OwnedField& b, bool single)
 {
   const OwnedField back = turned_back(b);
@@ -90,7 +90,7 @@ HalfSolution SupernodalStepSolver::forward(const OwnedField& b, bool single)
   return half;
 }
 
-/// Slots of the probed nodes; columns that are not there yet are made, those of wide probes too.
+/// Slots of the probed nodes. Makes all missing columns, also those of the wide probes.
 std::vector<int> SupernodalStepSolver::slots_of(const Probes& probes, ComplianceReport& report)
 {
   std::vector<int> slots, fresh;
@@ -156,7 +156,7 @@ void SupernodalStepSolver::add_to_interface(core::MatX& columns)
     interface_block_.add(Eigen::Map<const core::MatX>(sum.data(), columns.rows(), columns.cols()));
 }
 
-/// The three rows of every probed node turned with it.
+/// Multiplies the three rows of every probed node by the rotation R of the node.
 void SupernodalStepSolver::turn_rows(const Probes& probes, core::MatX& rows) const
 {
   if (R_.empty()) return;
@@ -205,7 +205,7 @@ core::MatX SupernodalStepSolver::block(const Probes& probes, ComplianceReport& r
   return C;
 }
 
-/// This rank's share of Xᵀ y by slot of the probes.
+/// This rank's term of Xᵀ y, by slot of the probes; the terms of all ranks add up.
 core::VecX SupernodalStepSolver::read_here(const Probes& probes, const std::vector<int>& slots,
                                            const HalfSolution& half) const
 {
@@ -273,7 +273,7 @@ OwnedField SupernodalStepSolver::finish(const HalfSolution& half, const Probes& 
   return assembled(y, interface);
 }
 
-/// The field from the domain's and the interface's dofs, turned with the nodes.
+/// Field of the owned nodes from the dofs of the domain (y) and of the interface, turned by R.
 OwnedField SupernodalStepSolver::assembled(const core::VecX& y, const core::VecX& interface) const
 {
   OwnedField field = space_->zero();

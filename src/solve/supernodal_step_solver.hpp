@@ -10,14 +10,16 @@
 
 namespace trocar::solve {
 
-/// Supernodal Cholesky (CHOLMOD, METIS on the graph of the free nodes): one forward and one
-/// backward half-sweep per step serve free motion, constraints and correction, and compliance
-/// columns cost a path of the elimination tree (docs/theory.md section 8). Every rank eliminates
-/// the inside of its domain; what is left on the dofs between them is a dense block on rank 0.
+/// Step solver by supernodal Cholesky (CHOLMOD, ordered by METIS on the graph of the free nodes).
+/// One forward and one backward half-sweep per step serve free motion, constraints and correction.
+/// A compliance column costs one path of the elimination tree (docs/theory.md section 8). Every
+/// rank eliminates the inside of its domain. The Schur complement on the interface between the
+/// domains is a dense block on rank 0.
 class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
 {
  public:
-  /// When ranks would share more than `most_shared` dofs only `shared_dofs` may be asked.
+  /// If the interface has more than `most_shared` dofs, only `shared_dofs` of this object may be
+  /// used.
   SupernodalStepSolver(const StepSolverParts& parts, int most_shared);
 
   void set_operator(const fem::BlockMatrix& values) override;
@@ -69,16 +71,16 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
   bool reuse_;
   double bytes_ = 0.0, memory_ = 0.0;
   double sweeps_per_factor_ = 0.0;
-  int ordered_last_ = 0;                         ///< nodes put last
-  std::vector<int> value_count_, value_start_;   ///< doubles of every rank's blocks
-  std::vector<int> interface_;                   ///< whole dofs of the interface, ascending
-  std::vector<int> open_;                        ///< place in the interface of every open dof
-  std::map<int, int> interface_index_;           ///< place in the interface by whole dof
-  std::vector<std::vector<long long>> sources_;  ///< by rank, on rank 0
+  int ordered_last_ = 0;                         ///< number of nodes that are eliminated last
+  std::vector<int> value_count_, value_start_;   ///< count and offset of each rank's block values
+  std::vector<int> interface_;                   ///< global dofs of the interface, ascending
+  std::vector<int> open_;                        ///< index into `interface_` of every open dof
+  std::map<int, int> interface_index_;           ///< index into `interface_` by global dof
+  std::vector<std::vector<long long>> sources_;  ///< `Dissection::source`, on rank 0
   std::vector<Dissection::InterfaceEntry> interface_entries_;  ///< on rank 0
-  std::vector<int> index_;                  ///< dof of the domain by owned dof, or -1
-  std::optional<SupernodalFactor> factor_;  ///< of the domain, unless it is empty
-  std::optional<ReachColumns> columns_;     ///< with it
+  std::vector<int> index_;                  ///< by owned dof: dof of the domain, or -1
+  std::optional<SupernodalFactor> factor_;  ///< of the domain; none if the domain is empty
+  std::optional<ReachColumns> columns_;     ///< of X; there is one where there is a factor
   InterfaceBlock interface_block_;          ///< on rank 0
   std::map<int, int> first_slot_of_node_;   ///< file node -> slot of its x dof
   struct Wide
@@ -87,8 +89,8 @@ class SupernodalStepSolver final : public StepSolver, private IsolatedCompliance
     HalfSolution half;
   };
   std::map<long long, Wide> wides_;  ///< columns of the wide probes by id
-  int slots_ = 0;
-  std::vector<core::Mat3> R_;  ///< see `turn`
+  int slots_ = 0;                    ///< number of slots of nodal columns
+  std::vector<core::Mat3> R_;        ///< rotations since factoring, by file node; empty: none
 };
 
 }  // namespace trocar::solve
