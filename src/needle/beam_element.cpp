@@ -41,7 +41,8 @@ Mat12 beam_stiffness(const Section& section, double L)
     put(dof + 6, dof + 6, k);
     put(dof, dof + 6, -k);
   }
-  // Bending in the xy plane couples u_y with θ_z; in the xz plane u_z with θ_y, sign reversed.
+  // Bending in the xy plane couples u_y with θ_z. Bending in the xz plane couples u_z with θ_y; its
+  // coupling terms have the opposite sign.
   for (const auto& [u, r, sign] : {std::tuple{1, 5, 1.0}, std::tuple{2, 4, -1.0}}) {
     put(u, u, 12.0 * bend);
     put(u + 6, u + 6, 12.0 * bend);

@@ -19,28 +19,29 @@ struct Pose
   Mat3 R;
 };
 
-/// Prescribed motion of the base: advance at a velocity until the tip is `depth` beyond the entry,
-/// hold, withdraw until the end of the run; or a trajectory from a CSV file
-/// (columns time,x,y,z[,dx,dy,dz[,roll]]: linear between rows, held before and after).
+/// Prescribed motion of the base. Without a trajectory the base advances until the tip is `depth`
+/// beyond the entry, holds, and withdraws until the end of the run. A trajectory is a CSV table
+/// with the columns time,x,y,z[,dx,dy,dz[,roll]], linear between rows and constant
+/// before the first and after the last row.
 struct BaseMotion
 {
-  Vec3 entry = Vec3::Zero();       ///< where the path enters [m]
-  Vec3 direction = Vec3::UnitX();  ///< unit
-  double length = 0.0;             ///< of the needle [m]
-  double roll = 0.0;               ///< of the base about the direction at the start [rad]
-  double inserted = 0.0;           ///< depth of the tip at the start [m]
-  double velocity = 0.0;           ///< [m/s]
-  double depth = 0.0;              ///< where the advance ends [m]
-  double hold = 0.0;               ///< [s]
-  double withdraw_velocity = 0.0;  ///< [m/s], 0 = never
+  Vec3 entry = Vec3::Zero();       ///< point where the needle enters the tissue [m]
+  Vec3 direction = Vec3::UnitX();  ///< unit vector of the insertion
+  double length = 0.0;             ///< length of the needle [m]
+  double roll = 0.0;               ///< rotation of the base about `direction` at the start [rad]
+  double inserted = 0.0;           ///< depth of the tip below `entry` at the start [m]
+  double velocity = 0.0;           ///< velocity of the advance [m/s]
+  double depth = 0.0;              ///< depth of the tip below `entry` where the advance ends [m]
+  double hold = 0.0;               ///< time between advance and withdrawal [s]
+  double withdraw_velocity = 0.0;  ///< [m/s]; 0: the needle is never withdrawn
   std::optional<core::Csv> trajectory;
 
   Pose at(double t) const;
   Pose start() const;
 };
 
-/// Throws Failure (65) when the trajectory has the wrong columns, a zero direction, or does not
-/// begin where the needle is.
+/// Throws Failure (65) when the trajectory has the wrong columns, a direction of length 0, or a
+/// first pose that is not `motion.start()`.
 void check_trajectory(const BaseMotion& motion);
 
 }  // namespace trocar::needle

@@ -68,7 +68,7 @@ Mat3 Needle::rotary_inertia(int node, const Mat3& R) const
   const Section& s = settings_.section;
   const double l = settings_.motion.length / settings_.elements;
   const double share = nodal_mass(node) / s.area();
-  // Half an element on each side turns with the node: m l²/12 beside the section's own inertia.
+  // Half an element on each side turns with the node and adds m l²/12 to the section's inertia.
   const double across = share * s.second_moment() + nodal_mass(node) * l * l / 12.0;
   const Vec3 axes(share * s.polar_moment(), across, across);
   return R * axes.asDiagonal() * R.transpose();
@@ -198,7 +198,7 @@ Wrench Needle::base_wrench(const NeedleState& iterate, const Linearised& linear,
   const VecX holder = linear.A * increment(linear, coupling) - linear.r + coupling;
   Wrench wrench;
   const auto& x = iterate.shaft.x;
-  // The holder acts on every held node: on all of a rigid needle, on the first of a beam.
+  // The holder acts on every held node: all nodes of a rigid needle, the first node of a beam.
   for (int i = 0; 6 * i < linear.held; ++i) {
     const Vec3 force = holder.segment<3>(6 * i);
     wrench.force += force;

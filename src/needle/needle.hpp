@@ -22,13 +22,13 @@ struct NeedleSettings
   Model model = Model::beam;
   BaseMotion motion;
   Section section;
-  double density = 0.0;  ///< [kg/m³], 0: neither weight nor inertia
+  double density = 0.0;  ///< [kg/m³]; 0: neither weight nor inertia
   int elements = 20;
   double bevel = 0.0;           ///< see Shaft::bevel
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
 };
 
-/// Shape and velocity of a needle. A value, equal on every rank.
+/// Shape and velocity of a needle. A value type, equal on every rank.
 struct NeedleState
 {
   Shaft shaft;
@@ -38,7 +38,7 @@ struct NeedleState
 
   bool finite() const;
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -49,32 +49,34 @@ struct NeedleState
   }
 };
 
-/// A needle linearised about a shape: A d = r - H_nᵀλ + holder, on 6 dofs per node (δx, δθ).
-/// The base (first `held` dofs) follows the prescribed motion.
+/// Equations of a needle linearised about a shape: A d = r - H_nᵀλ + forces of the holder, with the
+/// increment d of 6 dofs per node (δx, δθ). The first `held` dofs follow the prescribed motion of
+/// the base: d = 0 there.
 struct Linearised
 {
-  int held = 6;           ///< 6 for a beam, all dofs for a rigid needle
-  MatX A;                 ///< M/(h h̄) + K (dofs x dofs) [N/m ...]
+  int held = 6;           ///< number of held dofs: 6 for a beam, all for a rigid needle
+  MatX A;                 ///< M/(h h̄) + K (dofs x dofs) [N/m, N, N m]
   VecX r;                 ///< weight - internal - inertia forces (dofs) [N, N m]
-  core::Cholesky factor;  ///< of A on the free dofs, when there are any
-  VecX free_increment;    ///< A⁻¹ r on the free dofs
+  core::Cholesky factor;  ///< of A on the free dofs; empty for a rigid needle
+  VecX free_increment;    ///< A⁻¹ r on the free dofs [m, rad]
 };
 
-/// Energies of a needle, and the work of its weight from one state to the next [J].
+/// Elastic and kinetic energy of a needle at the end of a step, and the work of its weight in the
+/// step [J].
 struct Energy
 {
   double elastic = 0.0, kinetic = 0.0, weight = 0.0;
 };
 
-/// What the holder puts on the needle at its base, world axes, moment about the base.
+/// Force and moment of the holder on the needle, in world axes. The moment is about the base.
 struct Wrench
 {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 moment = Vec3::Zero();  ///< [N m]
 };
 
-/// One needle: straight at rest, clamped to its moving base. Corotational Timoshenko beam or
-/// rigid. Not collective: small enough for every rank to hold and solve whole.
+/// One needle, straight at rest and clamped at its moving base. It is a corotational Timoshenko
+/// beam or rigid. Not collective: every rank holds and solves the whole needle, which is small.
 class Needle
 {
  public:
@@ -84,19 +86,24 @@ class Needle
   int dofs() const { return 6 * (settings_.elements + 1); }
 
   NeedleState initial() const;
-  /// The old shape carried rigidly to the base pose at time t: where a step starts to iterate.
-  /// Its tip is the tip that cuts; its travel is that of the step's end.
+  /// First iterate of a step: the old shape, moved rigidly with the base to its pose at time t.
+  /// The tip of this shape is the tip that cuts. `travel` already has its value at the end of the
+  /// step.
   NeedleState predict(const NeedleState& old, double t) const;
   Linearised linearise(const NeedleState& old, const NeedleState& iterate,
                        const core::TimeStep& step) const;
-  /// Adds the increment of λ: `coupling` is H_nᵀλ on all dofs.
+  /// `iterate` plus the increment d under λ, with the velocities that follow. `coupling`: H_nᵀλ on
+  /// all dofs [N, N m].
   NeedleState correct(const NeedleState& old, const NeedleState& iterate, const Linearised& linear,
                       const VecX& coupling, const core::TimeStep& step) const;
-  /// Weight less internal and inertia forces at a shape, `Linearised::r` without the rest.
+  /// Weight minus internal and inertia forces at the shape `at` [N, N m]: `Linearised::r`, but
+  /// without the cost of tangent and factor.
   VecX residual(const NeedleState& old, const NeedleState& at, const core::TimeStep& step) const;
-  /// Size of the increment that λ leaves to be made, rotations times the length, over the length.
+  /// Largest entry of the increment d under `coupling`: displacements over the needle's length,
+  /// rotations in rad. It is small when the iteration has converged.
   double relative_increment(const Linearised& linear, const VecX& coupling) const;
-  /// The holder's wrench in the linearised balance that `correct` satisfies.
+  /// Force and moment of the holder, from the linearised equations that `correct` solves:
+  /// A d - r + H_nᵀλ on the held dofs.
   Wrench base_wrench(const NeedleState& iterate, const Linearised& linear,
                      const VecX& coupling) const;
 

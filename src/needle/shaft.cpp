@@ -7,7 +7,7 @@
 namespace trocar::needle {
 namespace {
 
-/// Element and local coordinate 0..1 of an arc length.
+/// Element in which an arc length lies, and the local coordinate t in [0, 1] there.
 struct Place
 {
   std::size_t element;
@@ -23,7 +23,8 @@ Place place_of(const Shaft& shaft, double s)
   return {element, scaled - static_cast<double>(element)};
 }
 
-/// Hermite functions of (position a, slope a, position b, slope b), and their t-derivatives.
+/// Values of the four Hermite cubics of an element (position a, slope a, position b, slope b), or
+/// of their first (`derivative`) or second (`curvature`) derivatives with respect to t.
 struct Hermite
 {
   double a, slope_a, b, slope_b;
@@ -49,8 +50,8 @@ Vec3 combine(const Shaft& shaft, std::size_t e, const Hermite& n)
          n.slope_b * L * shaft.R[e + 1].col(0);
 }
 
-/// Local coordinate of the nearest point of one element's axis: Newton from the chord's answer,
-/// kept in [0, 1].
+/// Local coordinate of the point on one element's axis that is nearest to p. Newton's method starts
+/// from the projection of p on the chord and stays in [0, 1].
 double nearest_in_element(const Shaft& shaft, std::size_t e, const Vec3& p)
 {
   const Vec3 chord = shaft.x[e + 1] - shaft.x[e];
@@ -116,7 +117,7 @@ std::vector<std::pair<int, double>> jacobian(const Shaft& shaft, double s, const
   };
   add(place.element, n.a, n.slope_a);
   add(place.element + 1, n.b, n.slope_b);
-  if (s > shaft.length) {  // beyond the tip the place turns with the last node
+  if (s > shaft.length) {  // beyond the tip the point turns with the last node
     const Vec3 turn = (s - shaft.length) * shaft_at(shaft, shaft.length).tangent.cross(d);
     for (int k = 0; k < 3; ++k) entries.emplace_back(6 * shaft.elements() + 3 + k, turn[k]);
   }

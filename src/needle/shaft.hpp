@@ -10,20 +10,22 @@ namespace trocar::needle {
 using core::Mat3;
 using core::Vec3;
 
-/// The needle's shape: a chain of nodes with frames, the first column along the shaft. Between
-/// nodes the axis is the cubic with the nodes' positions and tangents: C1 along the needle.
+/// The needle's shape: nodes with frames, whose first column is the tangent of the shaft. Between
+/// two nodes the axis is the Hermite cubic of their positions and tangents, so the axis is C1.
 struct Shaft
 {
-  double length = 0.0;  ///< at rest [m]
-  std::vector<Vec3> x;  ///< nodes from base to tip [m]
-  std::vector<Mat3> R;  ///< their frames
-  double bevel = 0.0;   ///< lateral over axial force of the tip's face, along its frame's 2nd axis
+  double length = 0.0;  ///< length at rest [m]
+  std::vector<Vec3> x;  ///< positions of the nodes from base to tip [m]
+  std::vector<Mat3> R;  ///< frames of the nodes
+  /// cot ψ, the ratio of lateral to axial force on the tip's face; 0: symmetric tip. The lateral
+  /// force acts along the second column of the tip's frame.
+  double bevel = 0.0;
 
   int elements() const { return static_cast<int>(x.size()) - 1; }
   double element_length() const { return length / elements(); }
   const Vec3& tip() const { return x.back(); }
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -34,23 +36,23 @@ struct Shaft
   }
 };
 
-/// A place on the shaft: arc length s from the base at rest [m], position, unit tangent and two
-/// unit normals.
+/// A point on the shaft: arc length s from the base in the undeformed needle [m], position [m],
+/// unit tangent and two unit normals.
 struct ShaftPoint
 {
   double s;
   Vec3 x, tangent, normal_1, normal_2;
 };
 
-/// The place at arc length s; beyond the ends the end tangents go on.
+/// The point at arc length s. Beyond either end the shaft is continued along its end tangent.
 ShaftPoint shaft_at(const Shaft& shaft, double s);
 
-/// The place nearest to p, on the shaft or on its tangent beyond the tip (s > length): a point the
-/// tip has just left keeps a smooth gap until it is dropped.
+/// The point nearest to p on the shaft or on its tangent beyond the tip (s > length). The tangent
+/// keeps the gap of a coupling point smooth after the tip has left it, until the point is dropped.
 ShaftPoint project(const Shaft& shaft, const Vec3& p);
 
-/// d · δx(s) as a sum over nodal increments (δx, δθ), dof 6 i + k of node i: the row H_n of a
-/// point at s in the direction d.
+/// The row H_n of the shaft point at s in the direction d: pairs (dof, coefficient) that give
+/// d · δx(s) from the nodal increments (δx, δθ). Dofs 6 i to 6 i + 5 belong to node i.
 std::vector<std::pair<int, double>> jacobian(const Shaft& shaft, double s, const Vec3& d);
 
 }  // namespace trocar::needle

@@ -1,6 +1,6 @@
 #include "tissue/tissue.hpp"
 
-// What is worked out of a state on request: stress and energies.
+// Stress and energies of a state, computed only on request.
 namespace trocar::tissue {
 
 StressField Tissue::stresses(const OwnedField& u) const
@@ -13,7 +13,7 @@ StressField Tissue::stresses(const OwnedField& u) const
   StressField field{core::VecX::Zero(6 * tets),
                     core::VecX::Zero(mesh_->quadratic() ? 24 * tets : 0), core::VecX::Zero(tets)};
   for (std::size_t e = 0; e < space_->tets(); ++e) {
-    if (space_->nodes(e)[0] >= space_->owned()) continue;  // the owner of its first node has it
+    if (space_->nodes(e)[0] >= space_->owned()) continue;  // counted by the owner of its first node
     const auto local = static_cast<Eigen::Index>(e);
     const Eigen::Index tet = space_->file_tet(e);
     field.stress.segment<6>(6 * tet) = mine.stress.segment<6>(6 * local);
@@ -40,7 +40,8 @@ Work Tissue::work(const TissueState& old, const TissueState& past, const TissueS
   work.kinetic = space_->comm().sum(mine.kinetic);
   work.damped =
       space_->comm().sum(step.h * (mine.damping_power_mass + mine.damping_power_stiffness));
-  // Loads, and the supports where they move: they carry what is out of balance on their dofs.
+  // Work of the loads and of moving supports. The force of a support is what balances the other
+  // forces on its dofs.
   const OwnedField moved{next.u.value - old.u.value};
   OwnedField support{-forces(past, next.u, at, step).value - push.value};
   OwnedField elsewhere = support;

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-// The operator of the tets, apart from the rest of them: it takes a compiler as long.
+// Assembles the operator of the tets. This has a file of its own because it takes as long to
+// compile as the rest of ElementsOf.
 namespace trocar::tissue {
 
 template <int N>

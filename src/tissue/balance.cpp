@@ -19,7 +19,7 @@ core::VecX lengths(const OwnedField& field)
       .transpose();
 }
 
-/// The largest rest of a node over its scale, none of which falls below `least`.
+/// Largest rest[a] / (scale[a] + least) of the owned nodes a; infinity when a ratio is not finite.
 double largest_part(const core::VecX& rest, const core::VecX& scale, double least)
 {
   double worst = 0.0;

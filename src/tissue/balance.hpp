@@ -4,37 +4,40 @@
 
 namespace trocar::tissue {
 
-/// How far a state is from equilibrium. What is out of balance at a node is judged by the forces
-/// that meet there, not by those of the stiffest part of the body.
+/// How far a state is from equilibrium (docs/theory.md section 1). The residual r_a of node a is
+/// compared with the forces that meet at this node, not with those of the stiffest part of the
+/// body.
 struct Balance
 {
-  /// ‖r‖ over ‖f_ext‖ + ‖f_int‖ + ‖inertia‖ + ‖Hᵀλ‖, each summed up at the nodes: how far the
-  /// iteration has come.
+  /// Progress measure of the iteration: ‖r‖ / (‖f_ext‖ + ‖f_int‖ + ‖inertia‖ + ‖Hᵀλ‖ + `rounded`
+  /// over the Newton tolerance). The norms are those of assembled nodal forces.
   double norm = 0.0;
-  /// The largest |r_a| over its scale  Σ_e |f_e| + |f_ext| + |Hᵀλ|  (internal and inertial forces
-  /// of the tets at the node), with the floors below.
+  /// Largest |r_a| over the scale of its node, Σ_e |f_e,a| + |f_ext,a| + |(Hᵀλ)_a| + two floors
+  /// (see `of_largest`). f_e,a is the internal and inertial force of tet e at the node.
   double worst = 0.0;
-  double lost = 0.0;     ///< |Σ r_a|: what the supports do not carry of the loads [N]
-  double carried = 0.0;  ///< Σ |forces| of loads, rows and fluids, or of the supports [N]
-  double rounded = 0.0;  ///< norm of what rounding may make of nodal forces [N]
+  double lost = 0.0;  ///< |Σ r_a|: part of the loads that the supports do not carry [N]
+  /// The larger of two sums of |force|: over loads, rows and fluids, and over supports [N].
+  double carried = 0.0;
+  double rounded = 0.0;  ///< norm of the bounds on the rounding errors of nodal forces [N]
 
-  /// Whether supports carry the loads to a tolerance. In their sum rounding nearly cancels.
+  /// Whether the supports carry the loads to a tolerance. Rounding errors of the nodes nearly
+  /// cancel in the sum Σ r_a, hence the factor 0.01.
   bool carries(double tolerance) const { return lost <= tolerance * carried + 0.01 * rounded; }
 
-  /// Floors of a node's scale. Far from all loads a node need not be balanced better than this part
-  /// of the largest scale;
+  /// First floor of a node's scale: this part of the largest scale of all nodes. It loosens the
+  /// test for nodes far from all loads. Second floor: the bound on the rounding error over the
+  /// Newton tolerance, because no node can be balanced better than rounding allows. The actual
+  /// errors are 10 to 100 times smaller than this bound.
   static constexpr double of_largest = 1e-4;
-  /// and nowhere better than rounding lets it: its bound over the tolerance is part of the scale.
-  /// What comes of rounding is 10 to 100 times less than the bound.
 };
 
-/// What a residual is made of.
+/// Magnitudes of the forces whose sum is a residual.
 struct Sizes
 {
-  core::VecX size, rounding;   ///< see ForceSums, loads included (owned nodes) [N]
+  core::VecX size, rounding;   ///< as in ForceSums; `size` includes the loads (owned nodes) [N]
   double norms = 0.0;          ///< ‖f_ext‖ + ‖f_int‖ + ‖inertia‖ [N]
   fem::OwnedField internal{};  ///< forces of stress and stiffness damping [N]
-  fem::OwnedField damping{};   ///< of stiffness damping alone; empty: there is none [N]
+  fem::OwnedField damping{};   ///< as in ForceSums; empty: no stiffness damping [N]
 };
 
 }  // namespace trocar::tissue

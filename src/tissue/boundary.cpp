@@ -13,8 +13,8 @@
 namespace trocar::tissue {
 namespace {
 
-/// What a group prescribes along one axis of a node: a length, and the factor over time of one that
-/// is not zero.
+/// Displacement that a group prescribes along one axis of a node: `value` [m] times the factor
+/// `curve` over time. A value of 0 needs no curve.
 struct Prescribed
 {
   double value = 0.0;
@@ -35,7 +35,7 @@ struct Prescribed
 
 void refuse_conflicts(const BoundaryConditions& conditions, const mesh::Mesh& mesh)
 {
-  std::map<std::pair<int, int>, Prescribed> known;  // by node and axis
+  std::map<std::pair<int, int>, Prescribed> known;  // key: node and axis
   const auto add = [&](int node, int axis, const Prescribed& one) {
     const auto [place, fresh] = known.emplace(std::pair(node, axis), one);
     const Prescribed& other = place->second;
@@ -122,7 +122,9 @@ void require_supports(const fem::Dirichlet& fixed, const mesh::Mesh& mesh)
 {
   int count = 0;
   const std::vector<int> component = mesh::connected_components(mesh, count);
-  // A part is held when its fixed dofs see all six rigid motions: rank of Σ m mᵀ over them.
+  // A connected part is held when no rigid motion leaves all its fixed dofs at rest. Then Σ m mᵀ
+  // over its fixed dofs has rank 6; m holds the displacement of the dof in each of six rigid
+  // motions.
   std::vector<Eigen::Matrix<double, 6, 6>> held(static_cast<std::size_t>(count),
                                                 Eigen::Matrix<double, 6, 6>::Zero());
   std::vector<Vec3> first(static_cast<std::size_t>(count), Vec3::Constant(std::nan("")));

@@ -18,10 +18,10 @@ struct PrescribedDisplacement
   std::string group;
   Vec3 value;                      ///< [m]
   std::optional<core::Csv> curve;  ///< factor over time (columns time, factor)
-  std::map<int, Vec3> field{};     ///< by file node, instead of `value` [m]
+  std::map<int, Vec3> field{};     ///< displacement by file node; replaces `value` unless empty [m]
 };
 
-/// Traction on the undeformed physical surface (dead load).
+/// Dead load: force per undeformed area on a physical surface.
 struct Traction
 {
   std::string surface;
@@ -29,13 +29,13 @@ struct Traction
   std::optional<core::Csv> curve;
 };
 
-/// Everything that acts on the tissue from outside.
+/// Supports, prescribed displacements and loads of the tissue.
 struct BoundaryConditions
 {
   struct Fixed
   {
     std::string group;
-    unsigned axes = 7;  ///< bits 1, 2, 4 for x, y, z
+    unsigned axes = 7;  ///< fixed axes: bits 1, 2, 4 for x, y, z
   };
   std::vector<Fixed> fixed;
   std::vector<PrescribedDisplacement> displacements;
@@ -43,10 +43,11 @@ struct BoundaryConditions
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
 };
 
-/// Throws Failure (65) where two groups prescribe different displacements for one node.
+/// Throws Failure (65) where two groups prescribe different displacements for one axis of a node.
 void refuse_conflicts(const BoundaryConditions& conditions, const mesh::Mesh& mesh);
 
-/// The fixed set of these conditions. Throws Failure (65) for an unknown group.
+/// The dofs that supports and prescribed displacements fix. Throws Failure (65) for an unknown
+/// group.
 fem::Dirichlet dirichlet_set(const BoundaryConditions& conditions, const mesh::Mesh& mesh,
                              const fem::Space& space);
 
@@ -54,15 +55,15 @@ fem::Dirichlet dirichlet_set(const BoundaryConditions& conditions, const mesh::M
 fem::OwnedField prescribed_displacement(const BoundaryConditions& conditions,
                                         const mesh::Mesh& mesh, const fem::Space& space, double t);
 
-/// Factor of a load at time t: its curve, or 1 without one.
+/// Factor of a load or prescribed displacement at time t; 1 without a curve.
 double load_factor(const std::optional<core::Csv>& curve, double t);
 
-/// Nodal forces of a uniform traction of 1 Pa times `value` on a surface [N]. Collective-free.
+/// Nodal forces of the uniform traction `value` [Pa] on a surface [N]. Not collective.
 fem::OwnedField traction_load(const mesh::SurfaceGroup& surface, const Vec3& value,
                               const mesh::Mesh& mesh, const fem::Space& space);
 
-/// Throws Failure (64) when a connected part of the mesh keeps a rigid motion: a static problem
-/// would be singular.
+/// Throws Failure (64) when the supports leave a rigid motion of a connected part of the mesh free:
+/// a static problem would be singular.
 void require_supports(const fem::Dirichlet& fixed, const mesh::Mesh& mesh);
 
 }  // namespace trocar::tissue

@@ -9,7 +9,8 @@
 
 namespace trocar::tissue {
 
-/// g ⊗ 1 and 1 ⊗ g on the entries of a column-major 3x3 block: g by row, and g by column.
+/// A vector g spread over the first eight entries (i, j) of a column-major 3x3 block: g_i in `row`,
+/// g_j in `column`. Their products are the entries of dyads (see fem::SplitBlock).
 struct Spread
 {
   using Head = Eigen::Array<double, 8, 1>;
@@ -24,7 +25,8 @@ struct Spread
 
 /// The blocks of  R K₀ Rᵀ + scale_m M  [N/m] of one tet, for Lamé constants λ, μ [Pa].
 /// K_ab = Σ_q V (λ g_a g_bᵀ + μ g_b g_aᵀ + μ g_a·g_b I), g the shape gradients turned by R;
-/// M_ab = scale_m mass_ab I. The last bit of a pair's slot: its transpose instead.
+/// M_ab = mass_ab I. A pair (a, b) whose slot has its last bit set gets the transposed block (see
+/// fem::BlockPattern::slots).
 template <int N>
 fem::ElementBlocks<N> operator_blocks(double lambda, double mu, const fem::PointShape<N>* shape,
                                       const Mat3* R, const Eigen::Matrix<double, N, N>& mass,
@@ -34,7 +36,7 @@ fem::ElementBlocks<N> operator_blocks(double lambda, double mu, const fem::Point
   std::array<std::array<Spread, N>, points> spread;
   std::array<Eigen::Matrix<double, 3, N>, points> g;
   std::array<double, points> lambda_V, mu_V;
-  Eigen::Matrix<double, N, N> products;  // Σ μV gradients
+  Eigen::Matrix<double, N, N> products;  // Σ_q μ V g_a·g_b, which R does not change
   for (std::size_t q = 0; q < points; ++q) {
     g[q] = R[q] * shape[q].gradient;
     for (std::size_t a = 0; a < N; ++a)
@@ -66,7 +68,7 @@ fem::ElementBlocks<N> operator_blocks(double lambda, double mu, const fem::Point
   return blocks;
 }
 
-/// Adds scale v v ᵀ for nodal vectors v to the blocks of a tet.
+/// Adds scale v_a v_bᵀ to the blocks (a, b) of a tet; column a of v belongs to node a.
 template <int N>
 void add_rank_one(const Eigen::Matrix<double, 3, N>& v, double scale, std::span<const int> slots,
                   fem::ElementBlocks<N>& blocks)
@@ -81,12 +83,13 @@ void add_rank_one(const Eigen::Matrix<double, 3, N>& v, double scale, std::span<
   }
 }
 
-/// Adds V ∂P/∂F of one point to the blocks of a tet; `increment(G)` is ∂P/∂F : G [Pa].
+/// Adds the stiffness of one integration point to the blocks of a tet [N/m]. `increment(D)` returns
+/// ∂P/∂F : D [Pa] for an increment D of F.
 template <int N, class Increment>
 void add_tangent(const fem::PointShape<N>& shape, const Increment& increment,
                  std::span<const int> slots, fem::ElementBlocks<N>& blocks)
 {
-  // Column k of block (a, b) is (∂P/∂F : e_k ⊗ g_b) g_a.
+  // Column k of block (a, b) is V (∂P/∂F : e_k ⊗ g_b) g_a; of_node[b][k] is the bracket.
   std::array<std::array<Mat3, 3>, N> of_node;
   for (int b = 0; b < N; ++b)
     for (int k = 0; k < 3; ++k)

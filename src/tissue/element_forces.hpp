@@ -4,8 +4,8 @@
 
 #include "tissue/elements_of.hpp"
 
-// Forces, energies and stress of the tets: definitions for linear_tets.cpp and
-// quadratic_tets.cpp alone.
+// Forces, energies and stress of the tets: definitions that only linear_tets.cpp and
+// quadratic_tets.cpp include.
 namespace trocar::tissue {
 
 template <int N>
@@ -18,7 +18,8 @@ typename ElementsOf<N>::Nodal ElementsOf<N>::nodal(const GhostedField& field, st
   return values;
 }
 
-/// Adds to the nodes owned here; the others' owners add their own.
+/// Adds the values to the owned nodes of tet e only. The other nodes get theirs on the ranks that
+/// own them, because those ranks visit this tet too.
 template <int N>
 void ElementsOf<N>::scatter(const Nodal& values, std::size_t e, OwnedField& field) const
 {
@@ -42,7 +43,7 @@ core::VecX ElementsOf<N>::pressure_of(const core::VecX& theta) const
   return p;
 }
 
-/// Adds λ times the averages.
+/// Adds to p the averaged θ times the part of λ that belongs to it [Pa].
 template <int N>
 void ElementsOf<N>::add_averaged(const core::VecX& theta, core::VecX& p) const
 {
@@ -79,7 +80,7 @@ void ElementsOf<N>::add_averaged(const core::VecX& theta, core::VecX& p) const
     }
 }
 
-/// ∂θ/∂F : grad d at the points.
+/// ∂θ/∂F : grad d at every integration point; d is a displacement increment or a velocity.
 template <int N>
 core::VecX ElementsOf<N>::dilatation_rates(const LinearisationPoint& at,
                                            const GhostedField& d) const
@@ -94,7 +95,7 @@ core::VecX ElementsOf<N>::dilatation_rates(const LinearisationPoint& at,
   return theta;
 }
 
-/// θ at the points of a tet, with stiffness damping.
+/// Writes θ + β θ̇ (dilatation with stiffness damping) at the integration points of tet e.
 template <int N>
 void ElementsOf<N>::put_dilatations(std::size_t e, const LinearisationPoint& at,
                                     const Kinematics& motion, core::VecX& theta) const
@@ -113,7 +114,7 @@ void ElementsOf<N>::put_dilatations(std::size_t e, const LinearisationPoint& at,
   }
 }
 
-/// λθ at the points, with stiffness damping, averaged as the elements do [Pa].
+/// Pressures λ(θ + β θ̇) at the integration points, averaged as `Dilatation` says [Pa].
 template <int N>
 core::VecX ElementsOf<N>::pressures(const LinearisationPoint& at, const Kinematics& motion) const
 {
@@ -184,7 +185,7 @@ void ElementsOf<N>::add_forces_of(const std::vector<std::size_t>& tets,
                                   ForceSums& sums) const
 {
   core::VecX p;
-  if (averaged()) {  // right at these tets alone
+  if (averaged()) {  // p is valid only in these tets
     core::VecX theta = core::VecX::Zero(static_cast<Eigen::Index>(shapes_.size()));
     for (std::size_t e : with_patches(tets)) put_dilatations(e, at, motion, theta);
     p = pressure_of(theta);
@@ -196,7 +197,7 @@ template <int N>
 OwnedField ElementsOf<N>::operate(const LinearisationPoint& at, const core::Rates& rate,
                                   const GhostedField& d) const
 {
-  core::VecX p;  // what the averages add to the operator at the points
+  core::VecX p;  // pressure increment of the averaged θ, by point
   if (averaged())
     add_averaged(dilatation_rates(at, d), p.setZero(static_cast<Eigen::Index>(shapes_.size())));
   OwnedField product = space_->zero();

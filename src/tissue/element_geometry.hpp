@@ -6,7 +6,8 @@
 
 #include "tissue/elements_of.hpp"
 
-// Geometry and rotations of the tets: definitions for linear_tets.cpp and quadratic_tets.cpp alone.
+// Geometry and rotations of the tets: definitions that only linear_tets.cpp and quadratic_tets.cpp
+// include.
 namespace trocar::tissue {
 
 template <int N>
@@ -43,8 +44,8 @@ ElementsOf<N>::ElementsOf(const mesh::Mesh& mesh, const fem::Space& space,
   cliques_ = patch_nodes(*patches_, space);
 }
 
-/// Σ over Gauss points of f(barycentric coordinates, part of the reference volume): exact to degree
-/// 7 (five Gauss-Legendre points in each of three collapsed coordinates).
+/// Calls f(barycentric coordinates, weight) for every Gauss point of a tet; the weights sum to 1.
+/// Exact to degree 7: five Gauss-Legendre points in each of three collapsed coordinates.
 template <class F>
 void integrate_tet(const F& f)
 {
@@ -80,8 +81,8 @@ void ElementsOf<N>::measure_curved_masses(const mesh::Mesh& mesh)
   }
 }
 
-/// The diagonals in their own proportions (Hinton, Rock and Zienkiewicz 1976): linear tets have
-/// V/4.
+/// Keeps the diagonal of the consistent mass, scaled to the whole mass of the tet (Hinton, Rock and
+/// Zienkiewicz 1976). A node of a linear tet gets a quarter of it.
 template <int N>
 void ElementsOf<N>::lump_masses()
 {
@@ -95,7 +96,8 @@ void ElementsOf<N>::lump_masses()
   for (auto& [e, mass] : curved_mass_) lump(mass);
 }
 
-/// F of points from the first-th on, one per lane; the last of `count` fills the rest.
+/// Deformation gradients F of the points point_of(first) to point_of(first + count - 1), one per
+/// SIMD lane. The remaining lanes repeat the last of these points.
 template <int N>
 template <class PointOf>
 void ElementsOf<N>::gather_gradients(const GhostedField& u, const PointOf& point_of,
@@ -139,8 +141,9 @@ Folded ElementsOf<N>::folded(const GhostedField& u) const
   return found;
 }
 
-/// Rotations of `count` points, the k-th being point_of(k); identities from where a tet is turned
-/// inside out, and false.
+/// Writes the polar rotations of the points point_of(0) to point_of(count - 1) to R. Returns
+/// false where a tet is inverted; the batch with this tet and all later batches then get
+/// identities.
 template <int N>
 template <class PointOf>
 bool ElementsOf<N>::rotate(const GhostedField& u, const PointOf& point_of, std::size_t count,

@@ -2,13 +2,14 @@
 
 #include "tissue/elements_of.hpp"
 
-// Inertia and weight of the tets, and what their forces are judged by: definitions for
-// linear_tets.cpp and quadratic_tets.cpp alone.
+// Inertia and weight of the tets, and the scales that residuals are compared with: definitions that
+// only linear_tets.cpp and quadratic_tets.cpp include.
 namespace trocar::tissue {
 
-/// What a tet adds to the sizes that forces are judged by. Rounded are the displacement gradient,
-/// by ε Σ|∇N_b||u_b|, and where F = 1 + G is formed, F by ε; the stiffest wave modulus turns both
-/// into stress. Rates difference the displacements once and twice.
+/// Adds the part of tet e to ForceSums::size and ForceSums::rounding. Rounding changes the
+/// displacement gradient by ε Σ|∇N_b||u_b|, and F by ε where F = 1 + G is formed. The largest wave
+/// modulus, λ + 2μ, turns both errors into stress. Damping and inertia have a factor 2, because
+/// velocity and acceleration are differences of displacements.
 template <int N>
 void ElementsOf<N>::add_sizes(std::size_t e, const Kinematics& motion, const Nodal& force,
                               const Nodal& inertia, ForceSums& sums) const

@@ -21,7 +21,7 @@ bool ElementSettings::any(Model one) const
 
 bool LinearisationPoint::operator==(const LinearisationPoint& other) const
 {
-  // Vectors of unlike length may not be compared.
+  // Eigen cannot compare vectors of different length.
   return R == other.R && G == other.G && p.size() == other.p.size() && p == other.p;
 }
 

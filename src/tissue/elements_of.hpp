@@ -13,7 +13,7 @@
 
 namespace trocar::tissue {
 
-/// Tets with N nodes, 4 or 10.
+/// The element sums for tets with N nodes, 4 or 10.
 template <int N>
 class ElementsOf final : public Elements
 {
@@ -59,7 +59,8 @@ class ElementsOf final : public Elements
   }
   Model model(std::size_t e) const { return models_[static_cast<std::size_t>(region_[e])]; }
   bool averaged() const { return settings_.dilatation != Dilatation::pointwise; }
-  /// The part of λ that multiplies the dilatation at the point itself [Pa].
+  /// Part of λ that multiplies the dilatation of the integration point itself [Pa]. The rest,
+  /// `lambda_of_mean`, multiplies the averaged dilatation.
   double lambda_at_point(const Material& m) const
   {
     if (!averaged()) return m.lambda();
@@ -75,13 +76,14 @@ class ElementsOf final : public Elements
   {
     return values * shapes_[point].gradient.transpose();
   }
-  /// ∂θ/∂F in the configuration `at`.
+  /// ∂θ/∂F at an integration point, for the state `at`.
   Mat3 dilatation_gradient(const LinearisationPoint& at, std::size_t point) const
   {
     return exact() ? energy::dilatation_gradient(model(point / points), at.R[point], at.G[point])
                    : at.R[point];
   }
-  /// Mass matrix of a tet over its ρ [m³]: a form and its factor.
+  /// The mass matrix of tet e over ρ is mass_factor(e) · mass_form(e) [m³]. All straight tets share
+  /// one form.
   const Scalar& mass_form(std::size_t e) const
   {
     if (N == 4 || curved_mass_.empty()) return straight_mass_;
@@ -100,14 +102,15 @@ class ElementsOf final : public Elements
               std::vector<Mat3>& R) const;
   void measure_curved_masses(const mesh::Mesh& mesh);
   void lump_masses();
-  /// λθ at the points, of point values of θ averaged as the elements do [Pa].
+  /// Pressures λθ at the integration points [Pa] from the values of θ there, averaged as
+  /// `Dilatation` says.
   core::VecX pressure_of(const core::VecX& theta) const;
   void add_averaged(const core::VecX& theta, core::VecX& p) const;
   core::VecX dilatation_rates(const LinearisationPoint& at, const GhostedField& d) const;
   void put_dilatations(std::size_t e, const LinearisationPoint& at, const Kinematics& motion,
                        core::VecX& theta) const;
   core::VecX pressures(const LinearisationPoint& at, const Kinematics& motion) const;
-  /// These tets and those that share a dilatation with them.
+  /// The given tets and those that share a dilatation with one of them.
   std::vector<std::size_t> with_patches(const std::vector<std::size_t>& tets) const;
   void add_tet_forces(std::size_t e, const LinearisationPoint& at, const Kinematics& motion,
                       const core::VecX& p, ForceSums& sums) const;
@@ -120,20 +123,22 @@ class ElementsOf final : public Elements
 
   const fem::Space* space_;
   ElementSettings settings_;
-  bool exact_;                              ///< the tangent is
-  std::vector<fem::PointShape<N>> shapes_;  ///< by point
-  std::vector<int> region_;                 ///< by local tet
-  std::vector<Model> models_;               ///< by volume of the mesh
-  std::vector<std::size_t> turning_;  ///< points of tissue that is not linear; empty: all or none
-  std::vector<double> volume_;        ///< by local tet [m³]
-  Scalar straight_mass_;              ///< of a straight tet of unit volume
-  std::unordered_map<std::size_t, Scalar> curved_mass_;  ///< of curved ones, over ρ [m³]
+  bool exact_;                              ///< the tangent is exact
+  std::vector<fem::PointShape<N>> shapes_;  ///< by integration point
+  std::vector<int> region_;                 ///< volume of the mesh, by local tet
+  std::vector<Model> models_;               ///< material law, by volume of the mesh
+  /// Integration points of tissue that is not linear, where linear tissue exists too. Empty where
+  /// all tissue is linear or none is.
+  std::vector<std::size_t> turning_;
+  std::vector<double> volume_;  ///< volume by local tet [m³]
+  Scalar straight_mass_;        ///< mass form of a straight tet of unit volume
+  std::unordered_map<std::size_t, Scalar> curved_mass_;  ///< mass form by curved tet [m³]
   fem::Cliques cliques_;
   std::optional<Patches> patches_;  ///< only with nodal dilatation
 };
 
-/// (∂P/∂F + r_v ∂P/∂Ḟ) : D at a point, stress and viscous stress, without what a shared dilatation
-/// adds [Pa].
+/// (∂P/∂F + r_v ∂P/∂Ḟ) : D of elastic and viscous stress at an integration point [Pa]. The part of
+/// an averaged dilatation is left out; the caller adds it.
 template <int N>
 Mat3 ElementsOf<N>::increment(const LinearisationPoint& at, const core::Rates& rate,
                               std::size_t point, const Mat3& D) const

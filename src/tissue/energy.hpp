@@ -9,7 +9,7 @@ namespace trocar::tissue {
 
 using core::Mat3;
 
-/// e = sym(RᵀF) - I with F = I + G. From G, because in 1 + g small strains lose digits.
+/// e = sym(RᵀF) - I with F = I + G. It is computed from G, because small strains lose digits in F.
 inline Mat3 corotational_strain(const Mat3& R, const Mat3& G)
 {
   const Mat3 stretch = R.transpose() * G + (R.transpose() - Mat3::Identity());
@@ -26,13 +26,14 @@ inline Mat3 cofactor(const Mat3& F)
 
 /// The material laws below are all of one form, energy density ψ(F) = μ w(F) + λ/2 θ(F)², so that
 /// elements may average the dilatation θ while they keep w at every point:
-///   linear, corotational (Felippa 2000)  w = |e|², θ = tr e, e = sym(RᵀF) - I, R = I or polar
+///   linear, corotational (Felippa 2000)  w = |e|², θ = tr e, e = sym(RᵀF) - I
 ///   neo-Hookean (Bonet and Wood 2008)    w = (|F|² - 3)/2 - ln J, θ = J - 1
-/// First Piola stress P = μ ∂w/∂F + p ∂θ/∂F with p = λθ. They take the displacement gradient
-/// G = F - I; the rotations R are those of F wherever a derivative is meant to be exact.
+/// First Piola stress P = μ ∂w/∂F + p ∂θ/∂F with p = λθ. R is I in linear tissue. In corotational
+/// tissue derivatives are exact only if R is the polar rotation of F. All functions take the
+/// displacement gradient G = F - I.
 namespace energy {
 
-/// w, dimensionless.
+/// w of the laws above, dimensionless.
 inline double shear(Model model, const Mat3& R, const Mat3& G)
 {
   if (model != Model::neo_hookean) return corotational_strain(R, G).squaredNorm();
@@ -48,7 +49,7 @@ inline Mat3 shear_gradient(Model model, const Mat3& R, const Mat3& G)
   return F - cofactor(F) / F.determinant();
 }
 
-/// θ, dimensionless.
+/// θ of the laws above, dimensionless.
 inline double dilatation(Model model, const Mat3& R, const Mat3& G)
 {
   if (model != Model::neo_hookean) return R.cwiseProduct(G).sum() + (R.trace() - 3.0);
@@ -61,7 +62,8 @@ inline Mat3 dilatation_gradient(Model model, const Mat3& R, const Mat3& G)
   return model == Model::neo_hookean ? cofactor(Mat3::Identity() + G) : R;
 }
 
-/// dR for the increment D of F: R times the skew matrix of ω, (tr(S) I - S) ω = axial(RᵀD - DᵀR).
+/// Increment of the polar rotation R for the increment D of F: R times the skew matrix of ω, with
+/// (tr(S) I - S) ω = axial(RᵀD - DᵀR) and the stretch S = RᵀF.
 inline Mat3 rotation_increment(const Mat3& R, const Mat3& G, const Mat3& D)
 {
   const Mat3 S = R.transpose() + R.transpose() * G;
@@ -74,7 +76,7 @@ inline Mat3 rotation_increment(const Mat3& R, const Mat3& G, const Mat3& D)
   return R * skew;
 }
 
-/// ∂²w/∂F² : D.
+/// ∂²w/∂F² : D; R is held in corotational tissue unless the tangent is exact.
 inline Mat3 shear_increment(Model model, Tangent tangent, const Mat3& R, const Mat3& G,
                             const Mat3& D)
 {
@@ -89,7 +91,7 @@ inline Mat3 shear_increment(Model model, Tangent tangent, const Mat3& R, const M
   return R * (stretch + stretch.transpose());
 }
 
-/// ∂²θ/∂F² : D.
+/// ∂²θ/∂F² : D; 0 in linear tissue, and in corotational tissue unless the tangent is exact.
 inline Mat3 dilatation_increment(Model model, Tangent tangent, const Mat3& R, const Mat3& G,
                                  const Mat3& D)
 {
@@ -103,10 +105,11 @@ inline Mat3 dilatation_increment(Model model, Tangent tangent, const Mat3& R, co
   return Mat3::Zero();
 }
 
-/// Shear part of the viscous stress over βμ, linear in the rate D of F: the second Piola-Kirchhoff
-/// stress 2Ė, Ė = sym(FᵀD), of a neo-Hookean body; K₀ in the frame of the rotation of a
-/// corotational one. Symmetric in its action, positive semidefinite, 2 sym(D) at rest, 0 for a spin
-/// D = ωF (there: of equal stretches).
+/// Shear part of the viscous stress over βμ, linear in the rate D of F. Neo-Hookean tissue: F·2Ė
+/// with Ė = sym(FᵀD), so 2Ė is the second Piola-Kirchhoff stress. Other tissue: R·2 sym(RᵀD), the
+/// shear part of R K₀ Rᵀ. As a map of D the stress is symmetric and positive semidefinite. It is
+/// 2 sym(D) at F = I. It is 0 for a spin D = ωF; in corotational tissue only where the three
+/// stretches are equal.
 inline Mat3 viscous_shear(Model model, const Mat3& R, const Mat3& G, const Mat3& D)
 {
   const Mat3 A = model == Model::neo_hookean ? Mat3(Mat3::Identity() + G) : R;
@@ -116,7 +119,8 @@ inline Mat3 viscous_shear(Model model, const Mat3& R, const Mat3& G, const Mat3&
 
 }  // namespace energy
 
-/// Cauchy stress P Fᵀ / det F [Pa]; symmetric when P is that of the polar rotation of F.
+/// Cauchy stress P Fᵀ / det F [Pa]. With a corotational P it is symmetric only if P was computed
+/// with the polar rotation of F.
 inline Mat3 cauchy_stress(const Mat3& P, const Mat3& F)
 {
   return P * F.transpose() / F.determinant();

@@ -6,8 +6,9 @@ namespace trocar::tissue {
 
 enum class Model { linear, corotational, neo_hookean };
 
-/// Of corotational tissue: R K₀ Rᵀ with the rotations held, as in the paper, or all of it; or the
-/// first until it leads on too slowly within a step.
+/// Tangent of corotational tissue. `rotated`: R K₀ Rᵀ, the rotations held, as in the needle paper.
+/// `exact`: the full derivative. `automatic`: `rotated` until it converges too slowly in a step,
+/// then `exact`.
 enum class Tangent { rotated, exact, automatic };
 
 /// Isotropic elasticity and mass of one tissue.
@@ -18,7 +19,7 @@ struct Material
   double density = 1000.0;          ///< ρ [kg/m³]
   double rayleigh_mass = 0.0;       ///< α [1/s] in B = αM + βK
   double rayleigh_stiffness = 0.0;  ///< β [s]
-  std::optional<Model> model{};     ///< of this tissue; empty: that of all
+  std::optional<Model> model{};     ///< law; empty: ElementSettings::model
 
   double lambda() const  ///< first Lamé constant [Pa]
   {

@@ -15,7 +15,7 @@ Patches corner_patches(const fem::Space& space, const std::vector<int>& region)
       for (std::size_t a = 0; a < 4; ++a) whole[static_cast<std::size_t>(nodes[a])] = 1;
   }
   Patches patches;
-  std::map<std::pair<int, int>, int> number;  // by node and volume
+  std::map<std::pair<int, int>, int> number;  // of the patch, by node and volume
   std::vector<std::vector<Patches::Member>> members;
   for (std::size_t e = 0; e < space.tets(); ++e) {
     std::array<int, 4>& mine = patches.of_tet.emplace_back();

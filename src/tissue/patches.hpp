@@ -7,16 +7,16 @@
 
 namespace trocar::tissue {
 
-/// A corner node with the tets of one volume around it: where a nodal dilatation is averaged,
-/// θ_v = Σ_q V_q N_v(q) θ_q / M_v with M_v = Σ_q V_q N_v(q).
+/// The patches over which a nodal dilatation is averaged. A patch v is a corner node with the tets
+/// of one volume of the mesh around it: θ_v = Σ_q V_q N_v(q) θ_q / M_v with M_v = Σ_q V_q N_v(q).
 struct Patches
 {
-  /// Of every corner of every local tet; -1 when the tets around it are not all local, which is so
-  /// only for tets that touch no node owned here.
+  /// Patch of every corner of every local tet. -1: some tets around the corner may not be local.
+  /// This happens only in tets that touch no owned node.
   std::vector<std::array<int, 4>> of_tet;
-  std::vector<double> measure;     ///< M_v [m³]
-  std::vector<int> region;         ///< volume of the mesh
-  std::vector<std::size_t> start;  ///< of the members
+  std::vector<double> measure;     ///< M_v by patch [m³]
+  std::vector<int> region;         ///< volume of the mesh, by patch
+  std::vector<std::size_t> start;  ///< where the members of a patch begin in `member`
   struct Member
   {
     std::size_t tet;
@@ -27,10 +27,11 @@ struct Patches
   std::size_t size() const { return region.size(); }
 };
 
-/// The patches of a space with two rings; measures are left 0. `region` by local tet.
+/// The patches of a space with two overlap layers, all measures still 0. `region`: volume of the
+/// mesh, by local tet.
 Patches corner_patches(const fem::Space& space, const std::vector<int>& region);
 
-/// The nodes of every patch.
+/// The nodes of all tets of every patch.
 fem::Cliques patch_nodes(const Patches& patches, const fem::Space& space);
 
 }  // namespace trocar::tissue

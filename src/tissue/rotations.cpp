@@ -1,11 +1,12 @@
 #include "core/polar.hpp"
 #include "tissue/tissue.hpp"
 
-// How nodes have turned.
+// Rotations of the nodes, by which a lagged factor is turned.
 namespace trocar::tissue {
 
-/// Rotations of the nodes since the factor was made, in file order: of the volume-weighted mean of
-/// the tets around each. Nodes with a fixed axis do not turn: the supports do not turn with them.
+/// Rotation of every node since the factor was made, in file order: the polar rotation of the
+/// volume-weighted mean over the tets around the node. Nodes with a fixed axis get the identity,
+/// because their supports do not turn. Collective.
 std::vector<Mat3> Tissue::node_rotations(const std::vector<Mat3>& R,
                                          const std::vector<Mat3>& R_factor) const
 {

@@ -1,9 +1,12 @@
 #include "tissue/tissue.hpp"
 
-// Where the tissue is linearised, with which tangent, and when that cannot be.
+// Sets the linearisation point, makes factors or keeps older ones, and refuses a step where this
+// fails.
 namespace trocar::tissue {
 
-/// `goes_on`: from the last linearisation, whose pressures then lead to those of the tangent.
+/// Sets the linearisation point at_ for `iterate`; false when an element is inverted. `goes_on`:
+/// the last linearisation belongs to the same step. An exact tangent then takes its pressures from
+/// that linearisation.
 bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 {
   const bool led = goes_on && exact_at_ && tangent_.exact();
@@ -12,7 +15,8 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
     p = elements_->linearised_pressures(at_, space_->with_ghosts({iterate.value - u_at_.value}));
   const bool known = configured_.u && configured_.exact == tangent_.exact() && !tangent_.exact() &&
                      configured_.u->value == iterate.value;
-  bool admissible = true;  // else the balance would have been found where an element is folded
+  // A known state is admissible, because `balance` is called for admissible states only.
+  bool admissible = true;
   known_ = space_->comm().all(known);
   if (known_)
     at_ = configured_.at;
@@ -24,7 +28,7 @@ bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
   return admissible;
 }
 
-/// The factor of an operator may serve later ones.
+/// Whether the factor of one operator may also serve later operators (modified Newton).
 bool Tissue::may_lag() const
 {
   return !settings_.all_linear() && settings_.lag_tolerance > 0.0 &&
@@ -43,17 +47,18 @@ core::Outcome<core::Done> Tissue::make_factor(const LinearisationPoint& at)
   return made;
 }
 
-/// Exact tangents may be indefinite on the way to an equilibrium: a smaller step may do. Otherwise
-/// the operator fails for good.
+/// The refusal of a step whose exact tangent has no factor. An exact tangent may be indefinite on
+/// the way to an equilibrium, and a smaller step may succeed. For any other tangent a smaller step
+/// does not help: throws Failure (70).
 core::Refusal Tissue::without_factor(const core::Refusal& refusal) const
 {
   if (!tangent_.exact()) throw core::solver_error(refusal.why);
   return {"the exact tangent has no factor (an instability, or too large a step): " + refusal.why};
 }
 
-/// Where the state goes on with a factor that is not the one at hand, that is made again: a step
-/// depends on its state, not on what was tried or dropped in between. With other rates, or one that
-/// is worn, a new one is due anyway.
+/// Makes the factor of the state `old` again when the solver now has another one (after a rejected
+/// step, dropped caches or a restart). So a step depends on its state alone. Does nothing when the
+/// rates have changed, and drops a worn factor: a new factor is made in both cases.
 core::Outcome<core::Done> Tissue::go_on_with_factor(const TissueState& old, const TimeStep& step)
 {
   if (!old.factor || !(old.factor->rates == step.rates())) return core::Done{};
@@ -94,7 +99,8 @@ void Tissue::drop_caches()
   configured_.u.reset();
 }
 
-/// With stale reuse a number of steps share a factor, whatever it takes.
+/// Whether the factor should be made anew. With Reuse::stale it serves `stale_steps`
+/// linearisations, however many sweeps they take.
 bool Tissue::factor_worn() const
 {
   if (settings_.reuse == solve::Reuse::stale)
@@ -107,7 +113,7 @@ Folded Tissue::folded(const OwnedField& u) const
   const int none = mesh_->tet_count();
   Folded mine = elements_->folded(space_->with_ghosts(u));
   if (!u.value.allFinite()) mine.other = 0;
-  core::VecX least(2);  // negative, so that the largest is that of the first tet
+  core::VecX least(2);  // negative, because the maximum is then the first tet
   least << (mine.linear < 0 ? -none : -mine.linear), (mine.other < 0 ? -none : -mine.other);
   space_->comm().max(least);
   const auto first = [&](Eigen::Index k) {

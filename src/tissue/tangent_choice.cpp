@@ -8,7 +8,8 @@ TangentChoice::TangentChoice(ElementSettings& settings, Elements& elements)
       automatic_(settings.any(Model::corotational) && !settings.any(Model::neo_hookean) &&
                  settings.tangent == Tangent::automatic)
 {
-  // Beside neo-Hookean tissue, whose tangent is always exact, held rotations would save nothing.
+  // The tangent of neo-Hookean tissue is always exact. Held rotations in the corotational tissue
+  // beside it would save nothing.
   if (settings.any(Model::neo_hookean) && settings.tangent == Tangent::automatic)
     set(Tangent::exact);
 }

@@ -54,7 +54,8 @@ void Tissue::analyse()
   current_ = &operators_.back();
 }
 
-/// A step length that comes back finds its factor; many of them must not fill the memory.
+/// The operator for these rates. Linear tissue keeps two operators, so that a step length used
+/// before finds its factor again; more would fill the memory. Other tissue has one operator.
 Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
 {
   constexpr std::size_t most_kept = 2;
@@ -65,7 +66,7 @@ Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
   if (known != operators_.end()) return *known;
   if (operators_.size() < most_kept)
     analyse();
-  else  // the oldest one's analysis serves again
+  else  // reuse the oldest operator with its symbolic analysis
     std::rotate(operators_.begin(), operators_.begin() + 1, operators_.end());
   return operators_.back();
 }
@@ -120,17 +121,19 @@ OwnedField Tissue::forces(const TissueState& old, const OwnedField& u, const Lin
   return {load.value - sums.internal.value - sums.inertia.value};
 }
 
-/// What stress makes is known where the balance was looked at last; damping as well as long as the
-/// step is the same, or where the tissue rests: at the beginning of steps of first order.
+/// Whether the last `balance` computed the forces at u. Those of stress are then known. Those of
+/// stiffness damping are known too if the step is still the same (`goes_on`), or if they are zero
+/// because u is `old.u`. The latter holds at the beginning of a backward Euler step.
 bool Tissue::forces_known(const TissueState& old, const OwnedField& u, bool goes_on) const
 {
   if (!known_) return false;
   if (!damped_by_stiffness_ || goes_on) return true;
-  if (settings_.dilatation != Dilatation::pointwise) return false;  // in one with the pressures
+  if (settings_.dilatation != Dilatation::pointwise) return false;  // averaged together with p
   return space_->comm().all(old.u.value == u.value);
 }
 
-/// The forces where they are known.
+/// External minus internal, damping and inertia forces [N], from those that `balance` kept. Valid
+/// only where `forces_known` is true.
 OwnedField Tissue::forces_from_balance(const TissueState& old, const OwnedField& u,
                                        const TimeStep& step, bool goes_on) const
 {
@@ -143,7 +146,7 @@ OwnedField Tissue::forces_from_balance(const TissueState& old, const OwnedField&
   return {f.value - inertia.value};
 }
 
-/// The same of some elements alone, and all loads.
+/// External loads minus the internal, damping and inertia forces of the given elements [N].
 OwnedField Tissue::forces_of(const std::vector<std::size_t>& elements, const TissueState& old,
                              const OwnedField& u, const LinearisationPoint& at,
                              const TimeStep& step) const
@@ -165,7 +168,7 @@ Kinematics Tissue::kinematics(const TissueState& old, const OwnedField& u,
   return motion;
 }
 
-/// What prescribed displacements move in this linearisation [m].
+/// Increment from `iterate` to the prescribed displacements [m]; 0 on free dofs.
 OwnedField Tissue::prescribed_increment(const OwnedField& iterate, const TimeStep& step) const
 {
   OwnedField prescribed = space_->zero();
@@ -180,7 +183,8 @@ OwnedField Tissue::prescribed_increment(const OwnedField& iterate, const TimeSte
   return prescribed;
 }
 
-/// The operator of a linearisation at the present place, for whoever solves.
+/// A linearisation with the product and the factor of the current operator. `linearise` adds
+/// displacements and residual.
 solve::Linearisation Tissue::with_operator(const fem::Load& more)
 {
   solve::Linearisation at;
@@ -211,8 +215,6 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
       return without_factor(made.refusal());
   if (const auto made = use_operator(at_, step); !made) return without_factor(made.refusal());
   solve::Linearisation at = with_operator(more);
-  // Iterations end where rounding of the forces does, or would run on and on where nothing happens.
-  // Under loads that follow r is the rest of large ones.
   const bool known = forces_known(old, iterate, goes_on);
   Sizes sizes;
   if (at.lagged() && !known) sizes = no_sizes();
@@ -229,6 +231,9 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
   at.base = {iterate.value + prescribed.value};
   at.residual = std::move(r);
   if (!at.lagged()) return at;
+  // Iterative solvers also stop at this norm, below which the residual is only rounding. A
+  // tolerance relative to the load alone would never be met where nothing happens. Under loads that
+  // follow the tissue, r is a small difference of large forces, hence the larger part.
   at.least = least_rest(known ? configured_.sizes : sizes, at.loads_follow ? 1e-10 : 1e-12);
   if (!step.start && !goes_on) {
     at.guess = OwnedField{step.h * old.v.value};

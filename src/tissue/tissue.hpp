@@ -25,24 +25,24 @@ struct TissueSettings : ElementSettings
   solve::LinearSettings linear;
   solve::Provider provider = solve::Provider::automatic;
   solve::Reuse reuse = solve::Reuse::exact;
-  int stale_steps = 10;      ///< that share a factor with Reuse::stale
-  double most_memory = 0.0;  ///< that a factor of our own may take [B], 0: a part of what is free
-  std::vector<int> ordered_last;  ///< file nodes that needles are planned to reach
-  /// Equilibrium that a step with an older factor must reach, of its load; 0: always factor anew.
+  int stale_steps = 10;      ///< linearisations that share a factor with Reuse::stale
+  double most_memory = 0.0;  ///< memory limit of a supernodal factor [B]; 0: 70 % of what is free
+  std::vector<int> ordered_last;  ///< file nodes near the planned needle paths, eliminated last
+  /// Residual over load that a step with a lagged factor must reach; 0: factor in every step.
   double lag_tolerance = 0.0;
-  bool allow_inversion = false;  ///< of linear tissue, which feels nothing of it
-  /// Part of the forces at a node that may be left unbalanced where steps are iterated to the end.
+  bool allow_inversion = false;  ///< accept inverted elements in linear tissue
+  /// Part of the forces at a node that may stay unbalanced in a step that is iterated to the end.
   double newton_tolerance = 1e-8;
 };
 
-/// What the factor of turning tissue was made from: enough to make it again.
+/// Data from which the factor of turning tissue was made. They suffice to make it again.
 struct FactorOrigin
 {
   core::Rates rates;
-  LinearisationPoint at;  ///< where
-  bool exact = false;     ///< with the exact tangent
+  LinearisationPoint at;  ///< where the operator was linearised
+  bool exact = false;     ///< the operator had the exact tangent
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -65,10 +65,10 @@ struct TissueState
 {
   OwnedField u;                                  ///< [m]
   OwnedField v;                                  ///< [m/s]
-  std::shared_ptr<const FactorOrigin> factor{};  ///< empty: none yet, or linear tissue
-  solve::FactorAge age{};                        ///< of that factor
+  std::shared_ptr<const FactorOrigin> factor{};  ///< empty: no factor yet, or linear tissue
+  solve::FactorAge age{};                        ///< how often that factor was used
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -81,13 +81,13 @@ struct TissueState
   }
 };
 
-/// Tissue that nothing has moved.
+/// Undeformed tissue at rest.
 inline TissueState at_rest(const fem::Space& space)
 {
   return {space.zero(), space.zero(), {}, {}};
 }
 
-/// Energies at the end of a step and what went in and was lost in it [J].
+/// Energies at the end of a step, and work supplied and dissipated in the step [J].
 struct Work
 {
   double elastic = 0.0, kinetic = 0.0;
@@ -95,8 +95,8 @@ struct Work
   double damped = 0.0;    ///< by Rayleigh damping
 };
 
-/// Forces on the tissue [N], equal on every rank, by what holds it: prescribed displacements and
-/// supports, as the boundary conditions list them.
+/// Forces on the tissue [N] by its holders, in the order of the boundary conditions: one by each
+/// prescribed displacement (`tools`) and one by each support. Equal on every rank.
 struct Reactions
 {
   std::vector<Vec3> tools, supports;
@@ -111,57 +111,62 @@ class Tissue
   Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
          core::Ledger& ledger);
 
-  /// Linearises at `iterate` within the step that began at `old`, under loads that are linearised
-  /// there as well. `goes_on`: within the step from the last linearisation. Linear tissue keeps one
-  /// assembled and factored operator per distinct rates. Refused where an element is turned inside
-  /// out or an exact tangent has no factor. What it gives is good until the next one. Collective.
+  /// Linearises the tissue at `iterate`, under the loads `more` that are linearised there too.
+  /// Velocities are differences to `old`. `goes_on`: the last linearisation belongs to the same
+  /// step. Linear tissue keeps the factored operators of two pairs of rates. Refused when an
+  /// element is inverted or an exact tangent has no factor. The result is valid until the next
+  /// call. Collective.
   core::Outcome<solve::Linearisation> linearise(const TissueState& old, const OwnedField& iterate,
                                                 const TimeStep& step, const fem::Load& more = {},
                                                 bool goes_on = false);
 
-  /// The first tets that u turns inside out; what is not finite is no linear tissue's matter.
-  /// Collective; equal on every rank.
+  /// The first inverted tets at u. A u that is not finite counts as an inversion of tet 0 in
+  /// `other`, so that no option accepts it. Collective; equal on every rank.
   Folded folded(const OwnedField& u) const;
 
   TangentChoice& tangent() { return tangent_; }
 
-  /// Writes down what the factor was made from and has served. Not collective.
+  /// Stores in `state` what the factor was made from and how often it was used. Not collective.
   void remember_factor(TissueState& state) const;
-  /// Forgets all that was made for earlier steps. Not collective.
+  /// Forgets the operators, factors and forces of earlier steps. Not collective.
   void drop_caches();
   /// The factor of the last linearisation.
   solve::LaggedFactor& factor() { return current_->factor; }
   const solve::LaggedFactor& factor() const { return current_->factor; }
 
-  /// r = f_ext - f_int(u) - M(Δu/h - v)/h̄ - BΔu/h [N] on free dofs. Collective.
+  /// r = f_ext - f_int(u) - M(Δu/h - v)/h̄ - BΔu/h [N]; 0 on fixed dofs. Collective.
   OwnedField residual(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
-  /// The same with forces of rows and fluids, `more`, against what it is the rest of. Collective.
+  /// Adds the forces `more` of rows and fluids [N] to the residual and compares the sum with the
+  /// magnitudes of its terms. Keeps the forces at u, which the next `linearise` may use.
+  /// Collective.
   Balance balance(const TissueState& past, const OwnedField& u, const TimeStep& step,
                   const OwnedField& more);
 
-  /// Forces by which prescribed displacements and supports hold the tissue, `more` [N] being those
-  /// of rows and cavities. Costs the elements there. Collective.
+  /// Forces by which prescribed displacements and supports hold the tissue. `more`: forces of rows
+  /// and cavities [N]. Visits only the elements at held nodes. Collective.
   Reactions reactions(const TissueState& old, const OwnedField& u, const TimeStep& step,
                       const OwnedField& more) const;
 
-  /// In file order, equal on every rank. Only on request: an element loop, and all tets on every
-  /// rank. Collective.
+  /// Stress of all tets in file order, equal on every rank. Computed only on request, because it
+  /// costs an element loop and memory for all tets on every rank. Collective.
   StressField stresses(const OwnedField& u) const;
 
-  /// Energy account of an accepted step; `push` is Hᵀλ, and time derivatives count from `past`,
-  /// which is `old` with backward Euler. Only on request: an element loop more. Collective.
+  /// Energies and work of an accepted step. `push`: forces of rows and fluids [N]. Velocities
+  /// are differences to `past`, which is `old` with backward Euler. Computed only on request,
+  /// because it costs an element loop. Collective.
   Work work(const TissueState& old, const TissueState& past, const TissueState& next,
             const TimeStep& step, const OwnedField& push) const;
 
-  /// Where the operator is linearised at u. False when an element is turned inside out, on every
-  /// rank. Collective.
+  /// Sets the linearisation point `at` for the displacement u. False on every rank when an element
+  /// of any rank is inverted. Collective.
   bool configure(const fem::GhostedField& u, LinearisationPoint& at) const;
-  /// Fills the values of the operator. Not collective.
+  /// Assembles the matrix A for `at` and `rate`. Fixed dofs keep only their diagonal entry. Not
+  /// collective.
   void assemble(const LinearisationPoint& at, const core::Rates& rate);
 
   /// A d with the matrix assembled last [N]. Collective.
   OwnedField times(const OwnedField& d) const { return values_.times(*space_, d); }
-  /// The same element by element, supports left out. Collective.
+  /// The product of A with d, element by element, as if no dof were fixed [N]. Collective.
   OwnedField operate_by_elements(const LinearisationPoint& at, const core::Rates& rate,
                                  const OwnedField& d) const
   {
@@ -169,19 +174,20 @@ class Tissue
   }
 
   const fem::Dirichlet& fixed() const { return fixed_; }
-  /// Makes the solver and its symbolic analysis, so that its memory is known before it is taken.
-  /// Collective.
+  /// Makes the solver with its symbolic analysis. The memory of the factor is then known before it
+  /// is allocated. Collective.
   void analyse();
-  /// Builds and factors the operator of a step from rest, so that `-check` can stop. Collective.
+  /// Assembles and factors the operator of undeformed tissue, after which `-check` can stop. Throws
+  /// Failure (70) when there is no factor. Collective.
   void prepare(const TimeStep& step);
 
  private:
   struct Operator
   {
     solve::LaggedFactor factor;
-    std::optional<core::Rates> rate{};           ///< none: not assembled yet, or to be again
-    LinearisationPoint at{};                     ///< it was assembled with; empty for linear tissue
-    std::shared_ptr<const FactorOrigin> made{};  ///< from what its factor was; linear tissue: none
+    std::optional<core::Rates> rate{};  ///< of the assembled matrix; empty: it must be assembled
+    LinearisationPoint at{};            ///< where the matrix was assembled; empty for linear tissue
+    std::shared_ptr<const FactorOrigin> made{};  ///< source of the factor; empty for linear tissue
   };
 
   bool linearise_at(const OwnedField& iterate, bool goes_on);
@@ -206,8 +212,8 @@ class Tissue
                        const TimeStep& step) const;
   Kinematics kinematics(const TissueState& old, const OwnedField& u, const TimeStep& step) const;
   Sizes no_sizes() const;
-  /// Norm of what need not be balanced: a part of the sizes, and what rounding leaves [N].
-  /// Collective.
+  /// Norm of a residual that need not be reduced further [N]: `part` of the sizes plus the rounding
+  /// error. Collective.
   double least_rest(const Sizes& sizes, double part) const;
   void find_holders();
   OwnedField external(const TimeStep& step) const;
@@ -222,24 +228,24 @@ class Tissue
   fem::BlockPattern pattern_;
   fem::BlockMatrix values_;
   LinearisationPoint at_;  ///< of the present linearisation
-  OwnedField u_at_;        ///< where that is, with an exact tangent [m]
-  bool exact_at_ = false;  ///< it is that of an exact tangent; equal on all ranks
+  OwnedField u_at_;        ///< displacement of at_, kept for exact tangents only [m]
+  bool exact_at_ = false;  ///< at_ belongs to an exact tangent; equal on all ranks
   struct
   {
     std::optional<OwnedField> u;
-    bool exact = false;  ///< what an exact tangent needs is there
+    bool exact = false;  ///< `at` has what an exact tangent needs
     LinearisationPoint at;
     Sizes sizes;
-  } configured_;        ///< where the balance was looked at last: often the next step begins there
-  bool known_ = false;  ///< the present linearisation is there
-  bool damped_by_stiffness_;  ///< any of the tissue
-  OwnedField weight_;         ///< ∫ N_a ρ g of every node [N]
+  } configured_;              ///< from the last `balance`; the next step often begins at this u
+  bool known_ = false;        ///< at_ was copied from configured_
+  bool damped_by_stiffness_;  ///< some volume has stiffness damping
+  OwnedField weight_;         ///< weight at every owned node [N]
   std::vector<OwnedField> traction_;
-  /// Owned dofs that are held, and by which displacement or, after these, support.
+  /// Held owned dofs, each with the index of its holder: displacements first, then supports.
   std::vector<std::pair<Eigen::Index, std::size_t>> held_dofs_;
-  std::vector<std::size_t> held_elements_;  ///< that touch them
-  /// One per distinct pair of rates for linear tissue. Else one, filled again when these or any
-  /// rotation change.
+  std::vector<std::size_t> held_elements_;  ///< local elements that touch held nodes
+  /// Linear tissue: one for each of the last two pairs of rates. Other tissue: one, assembled again
+  /// when the rates or its linearisation point change.
   std::vector<Operator> operators_;
   Operator* current_ = nullptr;
 };

@@ -5,12 +5,13 @@
 
 #include "tissue/tissue.hpp"
 
-// What holds the tissue: tools (prescribed displacements of plates, clamps, single nodes) and
-// supports, and the forces they take.
+// Holders of the tissue and their forces. Holders are tools (prescribed displacements of plates,
+// clamps or single nodes) and supports.
 namespace trocar::tissue {
 
-/// A dof that two displacements hold belongs to the later one, whose value it takes; one that a
-/// displacement and supports hold to the displacement, one of several supports to the first.
+/// Finds the holder of every held dof. Where two displacements hold a dof, the later one counts, as
+/// in `prescribed_displacement`. A displacement counts before a support, and the first support
+/// before the others.
 void Tissue::find_holders()
 {
   std::map<Eigen::Index, std::size_t> owner;
@@ -47,7 +48,7 @@ void Tissue::find_holders()
 Reactions Tissue::reactions(const TissueState& old, const OwnedField& u, const TimeStep& step,
                             const OwnedField& more) const
 {
-  // Linear tissue is configured the same everywhere.
+  // The linearisation point of linear tissue is the same for every u.
   LinearisationPoint here;
   const bool linear = settings_.all_linear();
   if (!linear) elements_->configure_for(held_elements_, space_->with_ghosts(u), here);
