@@ -83,7 +83,8 @@ OwnedField Cavities::unit_load(int i) const
   return walls_[index(i)].to_nodes(g0_[index(i)], *space_);
 }
 
-/// Forces of the fluid's weight on the wall as it sees it.
+/// Adds the forces of the fluid's weight: on the deformed wall of a follower, else on the
+/// undeformed.
 void Cavities::add_weight(int i, const Shape& shape, const TimeStep& now, VecX& forces) const
 {
   const CavitySettings& one = settings_.cavities[index(i)];

@@ -20,14 +20,14 @@ inline std::size_t index(int i)
   return static_cast<std::size_t>(i);
 }
 
-/// The fluid-filled cavities of a scene: their walls, and how pressures push on them. What their
-/// fluids do is in network.hpp, their rows in rows.hpp, the pressures of the frozen model in
-/// frozen.hpp. Collective where it meets fields; all answers but fields are equal on every rank.
+/// The fluid-filled cavities of a scene: their walls, and the forces of pressures on the walls.
+/// network.hpp has the fluids, rows.hpp the rows, frozen.hpp the pressures of the frozen model.
+/// Functions that take a field are collective. All results but fields are equal on every rank.
 class Cavities
 {
  public:
-  /// Borrows mesh, space and ledger. Throws Failure (64, 65) as `Wall` does, and for two cavities
-  /// on one wall.
+  /// Borrows space and ledger. Throws Failure (65) as `Wall` does, and Failure (64) when two
+  /// cavities share a node of their walls.
   Cavities(const mesh::Mesh& mesh, const fem::Space& space, Settings settings,
            core::Ledger& ledger);
 
@@ -38,26 +38,27 @@ class Cavities
   const fem::Space& space() const { return *space_; }
   core::Ledger& ledger() const { return *ledger_; }
   bool any(Model model) const;
-  bool follows() const { return any(Model::follower); }  ///< steps are iterated
-  /// Some volume is that of the deformed wall.
+  bool follows() const { return any(Model::follower); }  ///< if so, steps are iterated
+  /// True when some cavity's volume is that of its deformed wall.
   bool exact() const { return follows() || any(Model::frozen); }
 
-  Shape shape(const OwnedField& u) const;  ///< collective: one pass over the walls' nodes
+  Shape shape(const OwnedField& u) const;  ///< of the walls at u; collective
   VecX volumes(const Shape& shape) const;  ///< [m³]
-  /// Volume gradient of the wall as its pressure sees it, by vertex [m²].
+  /// Force of a unit pressure by vertex [m²]: ∂V/∂x of a follower's deformed wall, else g_0.
   VecX gradient(int i, const Shape& shape) const;
-  OwnedField unit_load(int i) const;  ///< g_0 [m²]: force of a unit pressure on the wall at rest
-  /// The probe g_0 / area of a linear cavity.
+  OwnedField unit_load(int i) const;  ///< g_0 [m²]: force of a unit pressure on the undeformed wall
+  /// The probe g_0 / area of a cavity of the linear model.
   std::shared_ptr<const solve::DistributedFunctional> undeformed_probe(int i) const
   {
     return undeformed_probe_[index(i)];
   }
-  /// Counts the probes of follower cavities, so that no column is taken for another's.
+  /// A new version number for the probe of a follower, so that no old compliance column is reused.
   long long next_version() { return ++versions_; }
 
-  /// Forces of given pressures and of the fluids' weight; those of rows are not in it. Collective.
+  /// Forces of given pressures and of the fluids' weight, without the pressures that are solved
+  /// for. Not collective, but the load's `stiffness` is.
   fem::Load load(const State& state, const Shape& shape, const TimeStep& now) const;
-  /// All forces of pressures and weight where the walls are now [N]. Not collective.
+  /// Forces of all pressures and of the fluids' weight on the walls at `shape` [N]. Not collective.
   OwnedField forces(const State& state, const Shape& shape, const TimeStep& now) const;
   double given_pressure(int i, const TimeStep& now) const;  ///< [Pa]
 
@@ -70,7 +71,7 @@ class Cavities
   std::vector<Wall> walls_;
   std::vector<VecX> g0_;  ///< volume gradient of the undeformed walls, by vertex [m²]
   std::vector<std::shared_ptr<const solve::DistributedFunctional>>
-      undeformed_probe_;  ///< of linear cavities
+      undeformed_probe_;  ///< empty but for cavities of the linear model
   long long versions_ = 0;
 };
 

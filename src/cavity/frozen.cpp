@@ -79,7 +79,7 @@ std::vector<law::VolumeCubic> volume_cubics(const Cavities& cavities, const std:
   return cubics;
 }
 
-/// Where the pressures are sought: the volumes of the frozen cavities are cubics of their changes.
+/// Data of the search for pressures. Volumes of frozen cavities are cubics in the pressure changes.
 struct Search
 {
   const Cavities& cavities;
@@ -91,14 +91,14 @@ struct Search
 
 struct Miss
 {
-  VecX volume;       ///< V - V_law [m³]
-  MatX slope;        ///< by the pressures [m³/Pa]
+  VecX volume;       ///< V - V_law, by frozen cavity [m³]
+  MatX slope;        ///< ∂volume/∂p, by frozen cavity [m³/Pa]
   double worst;      ///< largest |V - V_law| / V_0
-  int at;            ///< of this cavity
-  double round_off;  ///< of that
+  int at;            ///< cavity of the largest error, index in `which`
+  double round_off;  ///< largest round-off of V_law / V_0
 };
 
-/// What the volumes miss their fluids' by, and its slope, where the pressures have changed.
+/// Errors of the volumes and their slope when the pressures have changed by `change` [Pa].
 Miss miss(const Search& search, const VecX& change)
 {
   const Cavities& cavities = search.cavities;
@@ -141,14 +141,14 @@ core::Outcome<VecX> next_pressures(const Cavities& cavities, const State& state,
     const Miss here = miss(search, change);
     const double enough = 1e-14 + here.round_off;
     if (here.worst <= 1e-15 || (here.worst >= before && here.worst <= enough)) break;
-    if (here.worst > before) {  // too far: back by half
+    if (here.worst > before) {  // the step went too far: take half of it back
       step *= 0.5;
       change -= step;
       if (step.norm() <= 1e-12 * (p.norm() + change.norm()))
         return refused(here, "no pressure gives its fluid's volume");
       continue;
     }
-    // V must grow with the pressure on the way from the last one.
+    // On the way from the last pressures V - V_law must grow with p.
     const MatX symmetric = 0.5 * (here.slope + here.slope.transpose());
     if (!core::Cholesky(symmetric).regular())
       return refused(here,

@@ -13,13 +13,14 @@ const law::FluidLaw& law_of(const Cavities& cavities, int i, const State& state)
   return state.cavity[index(i)].held ? constant_volume : cavities.one(i).fluid;
 }
 
-/// The conduit as the network sees it at time t. Gap: a thin annulus between plates, hole: a pipe
-/// (Poiseuille).
+/// The conduit at time t, as the network needs it. A gap is a thin annulus with the resistance of
+/// flow between plates, a hole is a pipe (Poiseuille).
 law::Conduit conduit_at(const Cavities& cavities, int e, const State& state, double t)
 {
   const ConduitSettings& one = cavities.settings().conduits[index(e)];
   const ConduitState& now = state.conduit[index(e)];
-  // A needle that comes along a void has hardly a channel: then the opening itself resists.
+  // A needle that arrives through a void has hardly any channel in tissue: then the opening itself
+  // resists, like a channel as long as the needle's radius.
   const double length = one.length > 0.0 ? one.length : std::max(now.channel, one.needle_radius);
   double resistance = one.resistance;
   if (one.needle >= 0 && now.needle_in && one.gap > 0.0)
@@ -36,7 +37,7 @@ law::Conduit conduit_at(const Cavities& cavities, int e, const State& state, dou
   return conduit;
 }
 
-/// What the network does at pressures p. A conduit carries the fluid of its compressible end.
+/// Flows of the network at pressures p. A conduit carries the fluid of its compressible end.
 law::Flows flows(const Cavities& cavities, const State& state, const VecX& p, double t)
 {
   std::vector<law::Conduit> conduits;
@@ -53,7 +54,7 @@ law::Flows flows(const Cavities& cavities, const State& state, const VecX& p, do
   return law::network_flows(conduits, p);
 }
 
-/// An amount at p = 0 as the cavity counts its own, at its reference pressure [m³].
+/// Converts an amount of fluid counted at p = 0 to the cavity's reference pressure [m³].
 double amount_at_reference(const Cavities& cavities, int i, const State& state, double at_zero)
 {
   return at_zero / law_of(cavities, i, state).density(state.cavity[index(i)].reference);
@@ -61,10 +62,10 @@ double amount_at_reference(const Cavities& cavities, int i, const State& state, 
 
 }  // namespace
 
-// ∂V_law,i/∂p_j of the network is h L_ij / ρ_i with its Laplacian L and the densities ρ. In the
-// compliance it is h L_ij / √(ρ_i ρ_j), symmetric positive semidefinite as rows must be and right
-// where densities are equal; the fluids are linearised until they settle, so that the answer is
-// exact.
+// The network's part of -∂V_law,i/∂p_j is h L_ij / ρ_i, with its Laplacian L and the densities ρ.
+// The compliance has h L_ij / √(ρ_i ρ_j) instead. This is symmetric positive semidefinite, as rows
+// need it, and equal to the former where densities are equal. The fluids are linearised again until
+// they settle, so the result is exact all the same.
 Fluid fluid(const Cavities& cavities, const State& state, const VecX& p, const TimeStep& now)
 {
   Fluid result{VecX::Zero(cavities.size()), MatX::Zero(cavities.size(), cavities.size()),
@@ -72,7 +73,7 @@ Fluid fluid(const Cavities& cavities, const State& state, const VecX& p, const T
   const bool flowing = !cavities.settings().conduits.empty() && !now.start;
   law::Flows network;
   if (flowing) network = flows(cavities, state, p, now.t);
-  VecX root = VecX::Ones(cavities.size());  // of the densities
+  VecX root = VecX::Ones(cavities.size());  // square roots of the densities
   for (int i = 0; i < cavities.size(); ++i) {
     const CavityState& mine = state.cavity[index(i)];
     const law::FluidLaw& law = law_of(cavities, i, state);
@@ -125,7 +126,7 @@ State start(const Cavities& cavities)
 
 namespace {
 
-/// The first of these stretches that lies inside the wall; null: none.
+/// The first of the stretches in `voids` that lies inside the cavity's wall; null: none.
 const VoidPiece* entered(const Cavities& cavities, int cavity, const std::vector<VoidPiece>& voids,
                          const Shape& shape)
 {
@@ -147,13 +148,14 @@ State advance(const Cavities& cavities, const State& old, const Between& step, c
       mine.amount += mine.whole * (core::interpolate(*curve, 1, step.t) -
                                    core::interpolate(*curve, 1, step.t_old));
   }
-  Shape now;  // looked at only when a needle is in some void
+  Shape now;  // made only when a needle is in some void
   for (std::size_t e = 0; e < cavities.settings().conduits.size(); ++e) {
     const ConduitSettings& conduit = cavities.settings().conduits[e];
     if (conduit.needle < 0) continue;
     ConduitState& state = next.conduit[e];
     const std::vector<VoidPiece>& mine = step.voids[index(conduit.needle)];
-    state.needle_in = !mine.empty();  // and in every cavity that the conduit joins
+    // True in the end when every cavity that the conduit joins has a stretch of the needle inside.
+    state.needle_in = !mine.empty();
     if (mine.empty()) continue;
     if (now.empty()) now = cavities.shape(u);
     for (int i : {conduit.from, conduit.to}) {

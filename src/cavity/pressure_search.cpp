@@ -4,7 +4,7 @@
 
 namespace trocar::cavity {
 
-/// How the tissue alone answers to the pressure of every frozen cavity, once for each operator.
+/// Responses of the tissue alone to a unit pressure in each frozen cavity, made once per operator.
 const PressureResponses& PressureSearch::unit_pressure_responses(const State& state,
                                                                  const TimeStep& now,
                                                                  solve::LaggedFactor& factor)
@@ -12,7 +12,8 @@ const PressureResponses& PressureSearch::unit_pressure_responses(const State& st
   constexpr std::size_t most_kept = 2;
   const std::vector<int> which = frozen(*cavities_, state);
   const auto known = responses_.find(now.rates());
-  // Pressures that are given at the start only join later.
+  // The number of responses grows when a cavity with a given pressure at the start joins the
+  // search.
   if (known != responses_.end() && known->second.per_p.size() == which.size()) return known->second;
   if (responses_.size() == most_kept) responses_.clear();
   PressureResponses answers{{}, VecX::Zero(static_cast<Eigen::Index>(which.size()))};
@@ -26,7 +27,7 @@ const PressureResponses& PressureSearch::unit_pressure_responses(const State& st
   return responses_[now.rates()] = std::move(answers);
 }
 
-/// The same when rows that hold go on holding: w̃ = w + A⁻¹Hᵀ ∂λ/∂p.
+/// Responses with rows: w̃ = w + A⁻¹Hᵀ ∂λ/∂p, where rows that hold go on holding.
 PressureResponses PressureSearch::with_rows(const constraint::Laws& laws,
                                             const PressureResponses& alone,
                                             solve::LaggedFactor& factor) const
@@ -54,7 +55,7 @@ core::Outcome<constraint::Saddle> PressureSearch::solve(constraint::Laws& laws,
   take_pressures(*cavities_, {}, {}, now, state);
   for (updates_ = 0;; ++updates_) {
     const VecX p = pressures(state)(which);
-    OwnedField u = free;  // + A⁻¹Hᵀλ + Σ p A⁻¹g_0
+    OwnedField u = free;  // becomes free + Σ p A⁻¹g_0 + A⁻¹Hᵀλ
     for (std::size_t k = 0; k < alone.per_p.size(); ++k)
       u.value += p[static_cast<Eigen::Index>(k)] * alone.per_p[k].value;
     if (!system.empty()) {

@@ -8,8 +8,9 @@
 
 namespace trocar::cavity {
 
-/// The frozen model's search for pressures around the laws of all other rows (fluid paper): the
-/// tissue is moved by p g_0 until the exact volumes are those of the fluids.
+/// Search for the pressures of frozen cavities (fluid paper). Each update loads the tissue with
+/// Σ p g_0, meets the laws of all rows, and compares the volumes of the deformed walls with those
+/// of the fluids.
 class PressureSearch
 {
  public:
@@ -19,11 +20,11 @@ class PressureSearch
   {
   }
 
-  /// The saddle point of a linearisation with its own factor, and the pressures into `state`.
-  /// Refused when the volumes are not reached. Collective.
+  /// Returns the saddle point of a linearisation whose factor is that of A, and stores the
+  /// pressures in `state`. Refused when the volumes are not reached. Collective.
   core::Outcome<constraint::Saddle> solve(constraint::Laws& laws, solve::Linearisation& at,
                                           const VecX& start, const TimeStep& now, State& state);
-  int updates() const { return updates_; }  ///< of the pressures in the last search
+  int updates() const { return updates_; }  ///< updates of the pressures in the last search
 
  private:
   const PressureResponses& unit_pressure_responses(const State& state, const TimeStep& now,

@@ -7,7 +7,7 @@
 namespace trocar::cavity {
 namespace {
 
-/// δ = (V - V_law(p))/area, linear in the pressures about those of the rows.
+/// Sets gaps and couplings of δ = (V - V_law(p))/area, with V_law linearised about `rows.pressure`.
 void set_gaps(const Cavities& cavities, const CavityRows& rows, constraint::Set& set)
 {
   const auto count = static_cast<int>(rows.cavity.size());
@@ -71,7 +71,7 @@ bool refresh(const Cavities& cavities, const VecX& lambda, CavityRows& rows, con
     p[i] = lambda[rows.first + static_cast<Eigen::Index>(k)] / cavities.wall(i).area();
   }
   Fluid there = fluid(cavities, rows.state, p, rows.now);
-  // Pressures at which a fluid would have flowed out whole lie beyond the answer.
+  // Pressures at which more fluid flows out of a cavity than it has lie beyond the solution.
   constexpr int most_halvings = 30;
   for (int k = 0; k < most_halvings && drained(there) >= 0; ++k) {
     p = 0.5 * (p + rows.pressure);

@@ -5,7 +5,7 @@
 #include "cavity/network.hpp"
 #include "constraint/set.hpp"
 
-// Cavities in the constraint system: a row has the multiplier p·area [N] and the gap
+// Rows of cavities in the constraint system: the multiplier is p·area [N] and the gap is
 // (V - V_law)/area [m].
 namespace trocar::cavity {
 
@@ -14,21 +14,22 @@ struct CavityRows
 {
   int first = 0;
   std::vector<int> cavity;
-  VecX held;      ///< volume at zero increments, by row [m³]
-  VecX pressure;  ///< at which the fluids were linearised, by cavity [Pa]
-  Fluid fluid;    ///< there
-  State state;    ///< that the fluids were linearised for
+  VecX held;      ///< volume of the wall at zero increments, by row [m³]
+  VecX pressure;  ///< where the fluids are linearised, by cavity [Pa]
+  Fluid fluid;    ///< the fluids at `pressure`
+  State state;    ///< of the cavities, for `refresh`
   TimeStep now;
 };
 
-/// Rows of linear and follower cavities at the end of the last iterate. Collective.
+/// Adds rows for linear and follower cavities without given pressure, at an iterate. Collective.
 CavityRows add_rows(Cavities& cavities, const State& state, const Configuration& at,
                     constraint::Set& set);
 
-/// Linearises the fluids anew where the multipliers have led; false when they were right.
+/// Linearises the fluids anew at the pressures of λ and updates the rows. False, and nothing
+/// changed, when the last linearisation gives the volumes at λ to 1e-13 V_0.
 bool refresh(const Cavities& cavities, const VecX& lambda, CavityRows& rows, constraint::Set& set);
 
-/// Pressures from multipliers, and given ones of this time.
+/// Sets the pressures in `state`: of rows from their multipliers, given ones from the time.
 void take_pressures(const Cavities& cavities, const CavityRows& rows, const VecX& lambda,
                     const TimeStep& now, State& state);
 

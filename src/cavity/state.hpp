@@ -15,9 +15,9 @@ struct CavityState
 {
   double pressure = 0.0;        ///< at the reference point of its wall [Pa]
   double amount = 0.0;          ///< V_f: volume of the fluid at its reference pressure [m³]
-  double whole = 0.0;           ///< amount that a curve scales [m³]
-  double start_pressure = 0.0;  ///< [Pa]
-  double reference = 0.0;       ///< pressure at which the fluid takes its amount [Pa]
+  double whole = 0.0;           ///< amount that the volume curve scales [m³]
+  double start_pressure = 0.0;  ///< pressure after the start, for the alarm [Pa]
+  double reference = 0.0;       ///< pressure at which the fluid's volume is `amount` [Pa]
   bool given = false;           ///< the pressure is given: always, or only at the start
   bool held = false;            ///< the amount is held whatever the fluid (P-V curves)
 
@@ -37,11 +37,11 @@ struct CavityState
 
 struct ConduitState
 {
-  bool pierced = false;    ///< a needle came through
-  bool needle_in = false;  ///< and is still there
-  double channel = 0.0;    ///< tissue that it went through up to the wall [m]
-  double flow = 0.0;       ///< [m³/s]
-  double moved = 0.0;      ///< since the start [m³]
+  bool pierced = false;    ///< a needle has come through the wall
+  bool needle_in = false;  ///< the needle is in every cavity that the conduit joins
+  double channel = 0.0;    ///< length of the needle's way through tissue to the wall [m]
+  double flow = 0.0;       ///< from `from` to `to` [m³/s]
+  double moved = 0.0;      ///< volume that has flowed since the start [m³]
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>
@@ -72,11 +72,11 @@ struct State
 /// A stretch of a needle's path that lies in no tissue.
 struct VoidPiece
 {
-  Vec3 place;      ///< on the needle, in the stretch [m]
-  double channel;  ///< length of the path in tissue up to it [m]
+  Vec3 place;      ///< point of the needle in the middle of the stretch [m]
+  double channel;  ///< length of the path in tissue up to the stretch [m]
 };
 
-/// Coordinates of all walls' vertices, each from its reference point [m].
+/// Vertex coordinates by wall, each counted from the wall's reference point [m].
 using Shape = std::vector<VecX>;
 
 /// What one cavity did in a step.
@@ -84,7 +84,7 @@ struct CavityReport
 {
   double pressure = 0.0, volume = 0.0;  ///< [Pa], [m³] of the deformed wall
   double error = 0.0;                   ///< |V - V_law| / V_0, of the deformed wall
-  int iterations = 0;                   ///< linearisations or pressure updates
+  int iterations = 0;                   ///< linearisations or pressure updates, whichever are more
   bool alarm = false;
 };
 

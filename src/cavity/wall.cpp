@@ -43,7 +43,7 @@ Wall::Wall(const mesh::Mesh& mesh, const std::string& surface, bool caps) : name
   measure(mesh);
 }
 
-/// Faces by vertex, normals into the tissue.
+/// Stores the faces by vertex, with normals out of the fluid into the tissue.
 void Wall::orient(const mesh::Mesh& mesh, const mesh::SurfaceGroup& group)
 {
   std::map<Face, Face> boundary;  // sorted nodes -> nodes, normal out of the tissue
@@ -75,10 +75,11 @@ int Wall::vertex_of(int node) const
   return static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin());
 }
 
-/// Around every vertex the faces must hang together by edges: one fan.
+/// Throws unless the faces around every vertex form one fan, joined along their edges.
 void Wall::check_fans(const mesh::Mesh& mesh) const
 {
-  std::map<int, std::vector<std::array<int, 2>>> around;  // vertex -> edges opposite to it
+  // Maps a vertex to the edges opposite to it, one in each of its faces.
+  std::map<int, std::vector<std::array<int, 2>>> around;
   for (std::size_t f = 0; f < surface_.faces(); ++f)
     for (std::size_t k = 0; k < 3; ++k)
       around[face_node(f, k)].push_back({face_node(f, (k + 1) % 3), face_node(f, (k + 2) % 3)});
@@ -101,7 +102,8 @@ void Wall::check_fans(const mesh::Mesh& mesh) const
   }
 }
 
-/// Every edge has one face on each side; edges with one face only are the rims of holes.
+/// Throws when two faces pass an edge in the same direction. Edges of a single face form the rims
+/// of holes, which get caps or, without `caps`, are refused.
 void Wall::check_edges(const mesh::Mesh& mesh, bool caps)
 {
   std::map<std::array<int, 2>, int> directed;
@@ -114,7 +116,7 @@ void Wall::check_edges(const mesh::Mesh& mesh, bool caps)
                           tag_of(mesh, nodes_[static_cast<std::size_t>(edge[0])]) + " and " +
                           tag_of(mesh, nodes_[static_cast<std::size_t>(edge[1])]));
     }
-  std::map<int, int> next;  // along the rims, against the faces
+  std::map<int, int> next;  // next vertex on a rim, against the faces' direction
   for (const auto& [edge, count] : directed)
     if (!directed.count({edge[1], edge[0]})) next[edge[1]] = edge[0];
   while (!next.empty()) {
@@ -206,7 +208,7 @@ VecX Wall::at_vertices(const OwnedField& field, const fem::Space& space) const
   return values;
 }
 
-/// Sets the vertices of the caps to their means.
+/// Adds the weighted means of nodal values to the vertices of the caps, which are zero before.
 void Wall::add_caps(VecX& values) const
 {
   for (std::size_t c = 0; c < cap_vertices_.size(); ++c)
@@ -237,7 +239,7 @@ bool Wall::holds(const Vec3& point, const VecX& x) const
     const auto to = [&](std::size_t n) -> Vec3 {
       return x.segment<3>(3 * face_node(f, n)) - point;
     };
-    // van Oosterom and Strackee 1983
+    // Solid angle of a triangle (van Oosterom and Strackee 1983).
     const Vec3 a = to(i), b = to(j), c = to(k);
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     angle += 2.0 * std::atan2(a.dot(b.cross(c)),

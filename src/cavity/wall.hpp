@@ -13,10 +13,10 @@ using core::Vec3;
 using core::VecX;
 using fem::OwnedField;
 
-/// The wall between a cavity's fluid and the tissue: a physical surface of the mesh, closed,
-/// oriented out of the fluid, its holes closed by caps. A cap is a fan of straight spokes around
-/// the mean of its rim: no new dofs, and the pressure on it is carried by the rim. Faces are flat,
-/// or quadratic when the mesh is.
+/// The wall between a cavity's fluid and the tissue: a physical surface of the mesh, oriented out
+/// of the fluid, with its holes closed by caps. A cap is a fan of triangles around the mean of its
+/// rim. It adds no dofs: the rim carries the pressure on the cap. Faces are flat, or quadratic when
+/// the mesh is.
 class Wall
 {
  public:
@@ -28,9 +28,9 @@ class Wall
   const std::string& name() const { return name_; }
   double volume() const { return volume_; }                 ///< V_0, undeformed [m³]
   double area() const { return area_; }                     ///< undeformed, caps included [m²]
-  const Vec3& reference() const { return reference_; }      ///< coordinates count from there [m]
+  const Vec3& reference() const { return reference_; }      ///< origin of vertex coordinates [m]
   const std::vector<int>& nodes() const { return nodes_; }  ///< file nodes, ascending
-  /// File nodes around every hole that was capped.
+  /// File nodes around each hole that was capped.
   const std::vector<std::vector<int>>& rims() const { return rims_; }
   const law::ClosedSurface& surface() const { return surface_; }
 
@@ -38,11 +38,12 @@ class Wall
   const VecX& undeformed() const { return undeformed_; }
   /// Values of a field at the vertices (3 · vertices), equal on every rank. Collective.
   VecX at_vertices(const OwnedField& field, const fem::Space& space) const;
-  /// The adjoint: nodal values of what stands at the vertices. Not collective.
+  /// The adjoint of `at_vertices`: nodal forces equivalent to forces at the vertices. Not
+  /// collective.
   OwnedField to_nodes(const VecX& vertices, const fem::Space& space) const;
 
-  /// True when the point lies inside the wall at these vertex coordinates (counted, like them, from
-  /// the reference point): its solid angle is 4π.
+  /// True when `point` lies inside the wall with vertex coordinates x: the solid angle of the wall,
+  /// seen from the point, is then 4π. Both count from the reference point [m].
   bool holds(const Vec3& point, const VecX& x) const;
 
  private:
@@ -59,13 +60,13 @@ class Wall
   void add_caps(VecX& values) const;
 
   std::string name_;
-  law::ClosedSurface surface_;          ///< by vertex
-  std::vector<int> nodes_;              ///< file node of the first vertices
+  law::ClosedSurface surface_;          ///< faces, by vertex numbers
+  std::vector<int> nodes_;              ///< file nodes, ascending: the first vertices
   std::vector<std::vector<int>> rims_;  ///< in file nodes
-  /// The vertices of the caps, after those of the nodes: means of these, by weight.
+  /// A cap's vertex as a mean of nodal vertices: (vertex, weight). Numbered after these.
   using Mean = std::vector<std::pair<int, double>>;
   std::vector<Mean> cap_vertices_;
-  Vec3 reference_ = Vec3::Zero();
+  Vec3 reference_ = Vec3::Zero();  ///< mean of the nodes [m]
   VecX undeformed_;
   double volume_ = 0.0, area_ = 0.0;
 };

@@ -24,7 +24,7 @@ Outcome<Done> Laws::meet(solve::LaggedFactor& factor, const core::VecX& free,
   const law::Multipliers last = std::move(answer_);
   LawReport& report = *report_;
   int settlements = 0;
-  for (;; ++settlements) {  // once, or until the laws of fluids settle
+  for (;; ++settlements) {  // repeated only until nonlinear laws of fluids settle
     problem_ = system_->problem(W_, free);
     problem_.start = settlements > 0 ? answer_.lambda : last.converged ? last.lambda : start;
     answer_ = law::solve(problem_, settings_->solver);

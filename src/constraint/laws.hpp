@@ -14,45 +14,46 @@ namespace trocar::constraint {
 using core::Done;
 using core::Outcome;
 
-/// How the laws of rows are met, and what it took: sums over the linearisations of a step.
+/// Accuracy and cost of meeting the laws of the rows, over all linearisations of a step.
 struct LawReport
 {
-  int rows = 0, rank = 0, iterations = 0;  ///< of the last problem; iterations summed
+  int rows = 0, rank = 0, iterations = 0;  ///< rows, rank: of the last problem; iterations: sum
   double residual = 0.0;                   ///< worst true KKT residual [m]
-  double condition = 0.0;                  ///< see law::Multipliers
-  int outer = 0;                           ///< most solves that state-dependent bounds took
-  double contraction = 0.0;                ///< worst ratio of their last two changes
+  double condition = 0.0;                  ///< of the last problem, see law::Multipliers
+  int outer = 0;                           ///< most solves until state-dependent bounds settled
+  double contraction = 0.0;                ///< worst ratio of the last two changes of such bounds
   bool nonunique = false;
-  std::vector<law::BenchmarkResult> trials{};  ///< of the solvers compared
+  std::vector<law::BenchmarkResult> trials{};  ///< of the solvers in `LawSettings::compare`
   solve::ComplianceReport compliance{};        ///< sums over the linearisations
-  int passes = 0;                              ///< sweeps with the laws behind them
-  double leftover_gap = 0.0;  ///< what the laws with a stale compliance leave of the gaps [m]
-  double stale_error = 0.0;   ///< worst displacement error of that, on request [m]
+  int passes = 0;                              ///< passes made: half-sweep, laws, half-sweep
+  double leftover_gap = 0.0;  ///< largest gap left by laws met with a stale compliance [m]
+  double stale_error = 0.0;   ///< its largest displacement error, if asked for [m]
 };
 
 struct LawSettings
 {
   law::Settings solver;
-  std::vector<law::BenchmarkCase> compare;  ///< solvers timed beside it
+  std::vector<law::BenchmarkCase> compare;  ///< other solvers, timed on the same problems
   core::Ledger* ledger = nullptr;
 };
 
-/// The laws of one system of rows on the isolated compliance of a factor: δ = W λ + g, (δ, λ) in
-/// the laws, for one free motion after the other.
+/// Meets the laws of one system of rows with the isolated compliance of a factor: solves
+/// δ = W λ + g, (δ, λ) in the laws, for one free motion after the other.
 class Laws
 {
  public:
-  /// Borrows all.
+  /// Borrows all three.
   Laws(System& system, const LawSettings& settings, LawReport& report)
       : system_(&system), settings_(&settings), report_(&report)
   {
   }
 
-  /// Multipliers for the free motion `free` of the probes [m], from where gaps were measured,
-  /// beginning with those of the last call or, at first, with `start`. Refused when the laws are
-  /// not met, with the row's place where nothing can move it. Collective.
+  /// Solves for the multipliers. `free`: free motion of the probes from the place where gaps were
+  /// measured [m]. The solver starts from the multipliers of the last call, in the first call from
+  /// `start` [N]. Refused when the laws cannot be met; the reason names the place of a row that
+  /// nothing can move. Collective.
   Outcome<Done> meet(solve::LaggedFactor& factor, const core::VecX& free, const core::VecX& start);
-  /// W and C for this factor, when they are not yet. Collective.
+  /// Makes C and W for this factor, unless they are there already. Collective.
   void use(solve::LaggedFactor& factor);
 
   const System& system() const { return *system_; }
@@ -60,9 +61,9 @@ class Laws
   LawReport& report() { return *report_; }
   const core::MatX& compliance() const { return C_; }  ///< C of the probes [m/N]
   const law::Problem& problem() const { return problem_; }
-  const core::VecX& multipliers() const { return answer_.lambda; }  ///< [N]; empty: not met yet
+  const core::VecX& multipliers() const { return answer_.lambda; }  ///< [N]; empty before `meet`
   law::Multipliers take() { return std::exchange(answer_, {}); }
-  /// Every row holds or slips as in the call before.
+  /// True when every row holds or slips as in the call of `meet` before.
   bool same_states() const { return same_states_; }
 
  private:

@@ -9,11 +9,11 @@ namespace {
 using core::VecX;
 using solve::OwnedField;
 
-/// Most passes with an older factor, beyond the cost of a new one; and most with an up-to-date
-/// factor under loads that follow.
+/// Most passes with an older factor: `most_passes` more than the sweeps that a new factor would
+/// cost. Most passes with an up-to-date factor under loads that follow: `most_passes_of_own`.
 constexpr int most_passes = 8, most_passes_of_own = 200;
 
-/// The way to the saddle point so far.
+/// State of the iteration to the saddle point (docs/theory.md, algorithm 8.3).
 class ProjectedCg
 {
  public:
@@ -22,16 +22,16 @@ class ProjectedCg
   Outcome<Saddle> run();
 
  private:
-  /// One sweep with the factor and the laws behind it: where that leads.
+  /// Result of one pass: half-sweep forward, laws, half-sweep backward.
   struct Trial
   {
-    OwnedField d;  ///< from u [m]
-    VecX more;     ///< of the multipliers [N]
+    OwnedField d;  ///< change of u [m]
+    VecX more;     ///< change of the multipliers [N]
   };
-  /// What the rest becomes with it.
+  /// Changes of the residual by a trial: `rest_` becomes rest_ + pushed - A_d.
   struct Product
   {
-    OwnedField A_d, pushed;  ///< A d and Hᵀ more [N]
+    OwnedField A_d, pushed;  ///< A d, and Hᵀ times `more` [N]
   };
 
   Outcome<Trial> sweep();
@@ -52,17 +52,17 @@ class ProjectedCg
   solve::Linearisation& at_;
   VecX start_;
   double tolerance_;
-  OwnedField u_;                        ///< where the next pass starts [m]
-  VecX lambda_;                         ///< multipliers there [N]
-  OwnedField rest_;                     ///< r + Hᵀλ - A Δu there [N]
+  OwnedField u_;                        ///< displacement where the next pass starts [m]
+  VecX lambda_;                         ///< multipliers at u_ [N]
+  OwnedField rest_;                     ///< residual r + Hᵀλ - A Δu at u_ [N]
   double load_;                         ///< ‖r‖ [N]
   OwnedField direction_, A_direction_;  ///< last direction [m] and its product with A [N]
   VecX lambda_direction_;
-  double direction_energy_ = 0.0;  ///< of the last direction [J]; 0: none
-  bool on_rows_ = false;           ///< u meets the laws of all rows with lambda
-  bool exact_ = false;             ///< the factor has become that of A
+  double direction_energy_ = 0.0;  ///< energy of the last direction [J]; 0: there is none
+  bool on_rows_ = false;           ///< u_ and lambda_ meet the laws of all rows
+  bool exact_ = false;             ///< the factor is that of A: one pass solves
   int passes_ = 0;
-  double left_ = 0.0;  ///< norm of the rest after the last trial [N]
+  double left_ = 0.0;  ///< norm of the residual after the last trial [N]
 };
 
 ProjectedCg::ProjectedCg(Laws& laws, solve::Linearisation& at, const VecX& start, double tolerance)
@@ -87,7 +87,7 @@ Outcome<Saddle> ProjectedCg::run()
 {
   for (;;) {
     auto trial = sweep();
-    if (!trial) {  // try with the factor of the operator itself
+    if (!trial) {  // the laws cannot be met with this factor: try that of A
       if (!at_.factor->lags()) return trial.refusal();
       if (const auto made = make_own_factor(); !made) return made.refusal();
       continue;
@@ -108,7 +108,7 @@ Outcome<ProjectedCg::Trial> ProjectedCg::sweep()
   if (!rows()) return Trial{at_.factor->finish(half, {}, {}), {}};
   laws_.use(*at_.factor);
   const OwnedField ahead{u_.value - at_.iterate.value};
-  const VecX held = system().probe_forces(lambda_);  // that the rest has already
+  const VecX held = system().probe_forces(lambda_);  // these forces are in rest_ already
   const VecX free = at_.factor->read(system().probes(), half) +
                     solve::read(system().probes(), ahead, space()) - laws_.compliance() * held;
   if (const auto met = laws_.meet(*at_.factor, free, start_); !met) return met.refusal();
@@ -135,7 +135,8 @@ bool ProjectedCg::reached(const Product& product)
 
 Outcome<Done> ProjectedCg::go_on(Trial trial, Product product)
 {
-  const bool same_laws = space().comm().all(laws_.same_states());  // rows are solved by each rank
+  // Every rank solves the dense problem by itself, so the ranks have to agree here.
+  const bool same_laws = space().comm().all(laws_.same_states());
   const solve::LaggedFactor& factor = *at_.factor;
   const double most =
       factor.lags() ? most_passes + factor.solver().sweeps_per_factor() : most_passes_of_own;
@@ -148,7 +149,8 @@ Outcome<Done> ProjectedCg::go_on(Trial trial, Product product)
   return Done{};
 }
 
-/// What does not lead on: the factor is too old, or there is nothing to come to.
+/// The passes do not converge. An old factor is replaced. With an up-to-date one there may be no
+/// equilibrium: refused. `convex`: no direction of negative curvature was found.
 Outcome<Done> ProjectedCg::end(bool convex)
 {
   if (at_.factor->lags()) return make_own_factor();
@@ -170,9 +172,9 @@ Outcome<Done> ProjectedCg::make_own_factor()
   return Done{};
 }
 
-/// A step on which rows begin to hold or slip. The energy is convex and d a proximal step in the
-/// metric of P: it falls along d at least up to (dᵀPd)/(dᵀAd). The first step is a whole one, to
-/// get on the bilateral rows.
+/// A step in which rows begin to hold or slip. The energy is convex and d is a proximal Newton step
+/// in the metric of P, so the energy falls along d at least up to the fraction (dᵀPd)/(dᵀAd). The
+/// first step goes all the way, so that the bilateral rows are met from then on.
 void ProjectedCg::change_rows(const Trial& trial, const Product& product, bool same_laws)
 {
   double step = 1.0;
@@ -190,9 +192,9 @@ void ProjectedCg::change_rows(const Trial& trial, const Product& product, bool s
   direction_energy_ = 0.0;
 }
 
-/// One step of conjugate gradients from a preconditioned direction d; small bodies and soft rows
-/// are part of the energy, because they move with the multipliers. False when the energy has no
-/// minimum along it.
+/// One step of conjugate gradients with the preconditioned residual d. Small bodies and compliant
+/// rows move with the multipliers, so the energy includes their part. False when the energy has no
+/// minimum along the new direction.
 bool ProjectedCg::descend(Trial trial, OwnedField A_d)
 {
   auto& [d, more] = trial;

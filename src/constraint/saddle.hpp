@@ -5,41 +5,42 @@
 
 namespace trocar::constraint {
 
-/// Where a linearisation leads with its rows in their laws.
+/// Solution of a linearisation with its rows in their laws.
 struct Saddle
 {
-  solve::OwnedField u;             ///< the place: base + Δu [m]
+  solve::OwnedField u;             ///< displacement base + Δu [m]
   law::Multipliers multipliers{};  ///< of the rows; empty without rows
-  law::Problem problem{};          ///< that they solve
+  law::Problem problem{};          ///< the dense problem that the multipliers solve
 };
 
-/// Which of the three ways is taken where the factor lags.
+/// How `solve_saddle` proceeds where the factor is not that of A.
 struct SaddleSettings
 {
-  bool stale = false;        ///< the paper's way: laws once, with the compliance of the old factor
-  bool stale_error = false;  ///< and the exact way beside it, to tell how far off that is
-  double tolerance = 1e-8;  ///< ‖r + Hᵀλ - AΔu‖ of ‖r‖ + ‖Hᵀλ‖ where it is iterated
+  bool stale = false;        ///< use `paper` instead of `projected_cg`
+  bool stale_error = false;  ///< use `projected_cg` too, to report the error of `paper`
+  double tolerance = 1e-8;  ///< of projected_cg: ‖r + Hᵀλ - AΔu‖ over ‖r‖ + ‖Hᵀλ‖
 };
 
-/// Solves  A Δu = r + Hᵀλ, (δ, λ) in the laws of the rows  and moves to there. With the factor of A
-/// by one sweep (`direct`); with an older one, or under loads that follow, by conjugate gradients
-/// (`projected_cg`), or as the needle paper does (`paper`). `start`: multipliers to begin with.
-/// Collective.
+/// Solves  A Δu = r + Hᵀλ, (δ, λ) in the laws of the rows.  With the factor of A one pass is
+/// enough (`direct`). An older factor, or loads that follow, need conjugate gradients
+/// (`projected_cg`) or the needle paper's approximation (`paper`). `start`: multipliers to start
+/// from [N]. Collective.
 Outcome<Saddle> solve_saddle(Laws& laws, solve::Linearisation& at, const core::VecX& start,
                              const SaddleSettings& settings);
 
 Outcome<Saddle> direct(Laws& laws, solve::Linearisation& at, const core::VecX& start);
 
-/// Conjugate gradients on the held rows, one sweep with the old factor and the laws with its
-/// compliance as their preconditioner: constraint-preconditioned, projected CG. As long as rows
-/// change between holding and slipping it is the plain iteration u <- u + P⁻¹(rest). A factor that
-/// does not lead on is made anew.
+/// Projected conjugate gradients on the held rows (Gould, Hribar and Nocedal 2001). Their
+/// constraint preconditioner is one pass: a sweep with the old factor, and the laws with its
+/// compliance. As long as rows change between holding and slipping, damped steps along the
+/// preconditioned residual take the place of conjugate ones. Where the passes with an old
+/// factor do not converge, a new factor is made.
 Outcome<Saddle> projected_cg(Laws& laws, solve::Linearisation& at, const core::VecX& start,
                              double tolerance);
 
 /// The needle paper's reuse of columns from step to step: the laws are met once, with the
-/// compliance of an older operator; the tissue obeys the present one. What the gaps are off is
-/// reported.
+/// compliance of an older operator, and the tissue obeys the present operator. The resulting error
+/// of the gaps is reported (`LawReport::leftover_gap`).
 Outcome<Saddle> paper(Laws& laws, solve::Linearisation& at, const core::VecX& start,
                       const SaddleSettings& settings);
 

@@ -12,12 +12,12 @@ namespace trocar::constraint {
 
 using core::Vec3;
 
-/// Where a row takes hold of the tissue: a material place as a weighted mean of nodes. A coupling
-/// point has the four of its tet, a tip's support those around it.
+/// Where a row acts on the tissue: a material place as a weighted mean of nodes. A coupling point
+/// has the nodes of its tet (4 or 10), a tip's support has the nodes around the tip.
 struct Anchor
 {
   std::vector<int> node;  ///< file nodes
-  core::VecX weight;      ///< by node, sum 1; a zero weight makes no probe
+  core::VecX weight;      ///< by node, sum 1; a node of weight zero is not probed
 
   /// Σ weight · value(node).
   template <class Value>
@@ -38,30 +38,30 @@ struct Anchor
   }
 };
 
-/// The tissue at a material place, in a direction: direction · u(anchor).
+/// Displacement of a material place in a direction: direction · u(anchor).
 struct TissueTerm
 {
   Anchor anchor;
   Vec3 direction = Vec3::Zero();  ///< world frame
 };
 
-/// A dof of the row's small body: -coefficient · w_dof.
+/// Term of one dof of the row's small body: -coefficient · w_dof.
 struct BodyTerm
 {
   int dof;
   double coefficient;
 };
 
-/// A functional of many dofs of the tissue: coefficient · (g·u), g the set's
-/// functional of that index.
+/// A functional of many tissue dofs: coefficient · (g·u), with g the functional number `probe` of
+/// the set.
 struct DistributedTerm
 {
   int probe;
   double coefficient = 1.0;
 };
 
-/// One constraint row: δ = gap + Σ terms. λ > 0 pushes the tissue along its directions and the body
-/// against them. `start` is the multiplier to start from.
+/// One constraint row: δ = gap + Σ terms. λ > 0 pushes the tissue along the directions of the terms
+/// and the small body against them.
 struct Row
 {
   double gap = 0.0;  ///< δ at zero increments [m]
@@ -70,25 +70,25 @@ struct Row
   std::vector<BodyTerm> on_body{};
   std::vector<DistributedTerm> distributed{};
   double compliance = 0.0;           ///< c of a compliant row of the law zero, δ = -c λ [m/N]
-  double relative_compliance = 0.0;  ///< more compliance, in units of the row's own W_ii
-  double start = 0.0;                ///< [N]
+  double relative_compliance = 0.0;  ///< compliance to add, as a multiple of W_ii
+  double start = 0.0;                ///< multiplier to start from [N]
 
-  /// direction · u(anchor) - Σ coefficient · w_dof, the usual row of a needle.
+  /// The usual row of a needle: direction · u(anchor) - Σ coefficient · w_dof.
   static Row between(TissueTerm tissue, int body,
                      const std::vector<std::pair<int, double>>& jacobian);
 };
 
-/// The rows of one step in blocks that share a law. Born and gone within it.
+/// The rows of one linearisation, in blocks that share a law. Made anew in every linearisation.
 class Set
 {
  public:
   bool empty() const { return rows_.empty(); }
   int size() const { return static_cast<int>(rows_.size()); }
-  /// Adds a block and returns its first row. `point`: the coupling point it belongs to, not less
-  /// than those before.
+  /// Adds a block and returns its first row. `point`: number of the coupling point that the block
+  /// belongs to, not less than that of the block before.
   int add(std::vector<Row> rows, const law::Law& law, int point);
   int add(Row row, const law::Law& law, int point);
-  /// A point of its own.
+  /// Adds a row as a coupling point of its own.
   int add(Row row, const law::Law& law = {}) { return add(std::move(row), law, next_point()); }
   int next_point() const { return blocks_.empty() ? 0 : blocks_.back().point + 1; }
   const std::vector<Row>& rows() const { return rows_; }
@@ -97,12 +97,13 @@ class Set
 
   /// Adds a functional and gives its index, for `DistributedTerm::probe`.
   int add_functional(std::shared_ptr<const solve::DistributedFunctional> probe);
-  /// What the rows probe: file nodes with a non-zero weight, ascending, and the functionals,
-  /// which live as long as the set.
+  /// What the rows probe: file nodes with a non-zero weight, ascending, and the functionals. The
+  /// result points to functionals of the set, so the set must outlive it.
   solve::Probes probes() const;
 
-  /// Rows that give way to each other's multipliers: δ_i grows by `compliance` · λ_j and δ_j
-  /// likewise [m/N]; i may be j. Positive semidefinite in all.
+  /// Compliance between two rows, on top of that of tissue and bodies [m/N]: δ_i grows by
+  /// `compliance` · λ_j and δ_j by `compliance` · λ_i; i may be j. The matrix of all couplings is
+  /// positive semidefinite.
   struct Coupling
   {
     int i, j;
@@ -110,7 +111,7 @@ class Set
   };
   std::vector<Coupling>& couplings() { return couplings_; }
   const std::vector<Coupling>& couplings() const { return couplings_; }
-  /// For what changes while laws are met: a row's gap.
+  /// Replaces a row's gap, which nonlinear laws change while they are met.
   void set_gap(int row, double gap) { rows_[static_cast<std::size_t>(row)].gap = gap; }
 
  private:
@@ -120,7 +121,7 @@ class Set
   std::vector<Coupling> couplings_;
 };
 
-/// A body so small that its operator is dense and known to every rank.
+/// A body so small that its operator is dense and known to every rank: a needle.
 /// The first `held` dofs are prescribed, the rest are free.
 struct SmallBody
 {

@@ -15,7 +15,7 @@ Sparse matrix(Eigen::Index rows, Eigen::Index columns, const Entries& entries)
   return made;
 }
 
-/// Entries of one term; `slot` gives the first of a node's three.
+/// Adds the entries of one term; `slot` gives the first of a node's three columns.
 template <class Slot>
 void add_term(int row, const TissueTerm& term, const Slot& slot, Entries& entries)
 {
@@ -69,7 +69,7 @@ System::System(Set set, std::vector<SmallBody> bodies)
     const Eigen::Index dofs = bodies_[b].free_increment.size();
     jacobians_.push_back(jacobians_of(set_, static_cast<int>(b), bodies_[b].held + dofs));
     if (dofs == 0) continue;
-    // Of its own rows alone: those of other bodies do not move it.
+    // Only rows on this body contribute: rows on other bodies do not move it.
     std::vector<int> mine;
     for (int i = 0; i < set_.size(); ++i)
       if (set_.rows()[static_cast<std::size_t>(i)].body == static_cast<int>(b)) mine.push_back(i);

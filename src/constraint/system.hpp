@@ -8,9 +8,9 @@
 
 namespace trocar::constraint {
 
-/// The rows of one linearisation with their maps, made once: Ĥ from the probed dofs of the tissue
-/// to the rows, H_n from the dofs of every small body, and the compliance that rows have of their
-/// own, whatever the tissue does: needles, networks, compliance.
+/// The rows of one linearisation with matrices that are made once: Ĥ maps the probed dofs of the
+/// tissue to the rows, H_n the dofs of every small body. The rows' own compliance is what does not
+/// come from the tissue: that of small bodies and of couplings (see Set::Coupling).
 ///   δ = gap + Ĥ u - Σ H_n w.
 class System
 {
@@ -26,10 +26,10 @@ class System
   const solve::Probes& probes() const { return probes_; }
   core::VecX starts() const { return set_.starts(); }  ///< multipliers to start from [N]
 
-  /// W = Ĥ C Ĥᵀ + own compliance (rows x rows) [m/N] (paper eq. 3), C being that of the probes.
+  /// W = Ĥ C Ĥᵀ + own compliance (rows x rows) [m/N] (needle paper eq. 3), C: that of the probes.
   core::MatX compliance(const core::MatX& C) const;
-  /// The dense problem with g = gap + Ĥ u_free - Σ H_n w_free, `free` the tissue's free motion at
-  /// the probes from where the gaps were measured [m].
+  /// The dense problem with g = gap + Ĥ u_free - Σ H_n w_free. `free`: u_free, the free motion of
+  /// the probes from the place where the gaps were measured [m].
   law::Problem problem(const core::MatX& W, const core::VecX& free) const;
 
   core::VecX row_displacements(const core::VecX& probed) const { return H_ * probed; }  ///< Ĥ u
@@ -38,14 +38,16 @@ class System
   solve::OwnedField forces(const core::VecX& lambda, const fem::Space& space) const;
   /// H_nᵀλ of one body on all its dofs [N, N m]; the body feels the negative.
   core::VecX body_forces(const core::VecX& lambda, int body) const;
-  /// aᵀ (own compliance) b [J]: what bodies and soft rows take of the rows' work.
+  /// aᵀ (own compliance and Row::compliance) b [J]: the part of bodies and compliant rows in the
+  /// energy.
   double yielded(const core::VecX& a, const core::VecX& b) const;
 
-  /// Laws that bend: linearised anew where multipliers have led, they change gaps and couplings of
-  /// their rows. False when they were right.
+  /// Linearises nonlinear laws (of fluids) anew at λ and changes gaps and couplings of their rows.
+  /// False, and nothing changed, when the last linearisation is accurate at λ.
   std::function<bool(const core::VecX& lambda, Set& set)> relinearise{};
+  /// Calls `relinearise`. True when rows have changed, so that W must be made again.
   bool settle(const core::VecX& lambda);
-  /// What a row belongs to and where it is, for messages.
+  /// For messages: names the needle or cavity of a row that nothing can move, and its place.
   std::function<std::string(int row)> place{};
 
  private:
@@ -56,7 +58,7 @@ class System
   solve::Probes probes_;
   Sparse H_;
   std::vector<Sparse> jacobians_;  ///< H_n, by body (rows x its dofs)
-  Sparse of_bodies_, own_;         ///< H_n A_n⁻¹ H_nᵀ; with couplings
+  Sparse of_bodies_, own_;         ///< Σ H_n A_n⁻¹ H_nᵀ; the same plus couplings
 };
 
 }  // namespace trocar::constraint

@@ -34,8 +34,8 @@ void add_points_behind(const mesh::Mesh& mesh, InsertionState& state, double arc
     CouplingPoint point;
     point.site = static_cast<int>(state.points.size());
     point.stuck = false;
-    // The tip passed it within the step; it counts as having slipped the whole step, so that its
-    // friction is there at once and the force has no dent where points are born.
+    // The tip passed the site within this step. The point counts as having slipped for the whole
+    // step: its friction acts at once, and the force has no dent where points are born.
     const double site_arc = state.path.sites[state.points.size()].arc;
     point.needle_arc = needle_length + (site_arc - old_arc);
     state.points.push_back(point);
@@ -72,7 +72,7 @@ namespace {
 InsertionState enter(const Ground& ground, const InsertionState& old,
                      const needle::Shaft& predicted, const Deformed& tissue)
 {
-  // Takes the first entry: in the step the tip may have passed through a thin wall.
+  // The first entry counts: within one step the tip may have passed right through a thin wall.
   const auto entries = tissue.entries(predicted.x.front(), predicted.tip());
   if (entries.empty()) return old;
   const Vec3& entry = entries.front().X;
@@ -102,19 +102,20 @@ InsertionState enter(const Ground& ground, const InsertionState& old,
 InsertionState advance(const Ground& ground, const InsertionState& old,
                        const needle::Shaft& predicted, const Deformed& tissue)
 {
-  if (old.phase == Phase::contact) return old;  // what becomes of it the laws decide
+  if (old.phase == Phase::contact) return old;  // `settle_tip` decides after the solve
   if (first_tet(old.path) < 0) return enter(ground, old, predicted, tissue);
 
   const Vec3 tip = predicted.tip() + lead(old, predicted, tissue);
   const auto inside = tissue.reference_place(tip, old.path.vertex.back());
   if (old.phase == Phase::withdrawn) {
     if (!inside) return old;
-    // Beside the old channel the tip cuts a new one; the old one is then forgotten.
+    // A tip that comes back far beside its old channel cuts a new one; the old one is forgotten.
     const double beside = distance(old.path, *inside);
     if (beside > 0.3 * local_edge(ground.mesh, first_tet(old.path)))
       return enter(ground, old, predicted, tissue);
   }
-  // Beyond its tets the map of the nearest end is continued: the tip may be out at either side.
+  // Outside the tissue, extrapolate the map of the tet at the nearer end of the path: the tip may
+  // have left the tissue at either end.
   const bool behind = old.tip_arc <= 0.5 * old.path.length();
   const int end_tet = behind ? first_tet(old.path) : last_tet(old.path);
   const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
@@ -126,7 +127,8 @@ InsertionState advance(const Ground& ground, const InsertionState& old,
     if (resistance(ground, old) <= 0.0) grow_to(ground, next, X);
     arc = next.path.length();
   }
-  // A tip outside the tissue in front of the entry has left the channel, whatever the map says.
+  // A tip outside the tissue in front of the entry has left the channel, even where the
+  // extrapolated map gives a small positive arc.
   if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
   press(ground, next, arc, predicted, tissue);
   if (next.tip.pressed) arc = next.path.length();
@@ -140,7 +142,8 @@ bool off_channel(const Ground& ground, const InsertionState& state, const needle
                  const Deformed& tissue)
 {
   if (state.phase == Phase::inserted) return false;
-  // The tip itself may touch the surface, and stand in the dent it makes.
+  // The last part `clear` [m] of the shaft is not checked: the tip may touch the surface, and may
+  // stand in the dent that it makes.
   double clear = 1e-3 * shaft.length;
   if (state.phase == Phase::contact) {
     const double edge = local_edge(ground.mesh, state.tip.tet);

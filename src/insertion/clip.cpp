@@ -17,8 +17,8 @@ std::optional<Span> clip_line(const std::array<core::Vec3, 4>& corner, const cor
   constexpr double in_plane = 1e-6, parallel = 1e-15;
   Span span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int a = 0; a < 4; ++a) {
-    // A segment that stays within 1e-6 of a height from the face lies in it, whatever rounding says
-    // of where it would cross. So does one all of whose line is that far on one side.
+    // A segment with both ends within 1e-6 of a height from the face lies in the face: where it
+    // crosses would be round-off. A line parallel to the face is only tested for its side.
     const bool in_face = std::abs(at_P[a]) <= in_plane && std::abs(at_Q[a]) <= in_plane;
     if (in_face || std::abs(slope[a]) <= parallel) {
       if (at_P[a] < -in_plane) return std::nullopt;

@@ -13,10 +13,10 @@ struct Span
   double low, high;
 };
 
-/// Clips the infinite line P + t (Q - P) against a tet: the interval in which all barycentric
-/// coordinates, linear in t, are non-negative. A coordinate that hardly changes along the line
-/// (parallel to its face) only says yes or no, with room for round-off, so that a line in a face
-/// plane belongs to the tets on both sides. Empty when the line misses the tet.
+/// Clips the infinite line P + t (Q - P) against a tet: returns the interval of t in which all
+/// barycentric coordinates are non-negative; nothing when the line misses the tet. A line parallel
+/// to a face is tested for its side with a tolerance of 1e-6 of the height. So a line in the plane
+/// of a face belongs to the tets on both sides.
 std::optional<Span> clip_line(const std::array<core::Vec3, 4>& corner, const core::Vec3& P,
                               const core::Vec3& Q);
 

@@ -5,7 +5,7 @@
 
 #include "insertion/tip_events.hpp"
 
-// The rows that couple one needle and the tissue in a step, and what is made of their multipliers.
+// Makes the rows that couple one needle to the tissue, and takes their multipliers back.
 namespace trocar::insertion {
 
 core::MatX tributary_lengths(const mesh::Mesh& mesh, const InsertionState& state)
@@ -23,7 +23,7 @@ core::MatX tributary_lengths(const mesh::Mesh& mesh, const InsertionState& state
     double at = piece.begin;
     const double end = std::min(piece.end, state.tip_arc);
     for (Eigen::Index k = 0; k < points && at < end; ++k) {
-      // The cell of point k ends half-way to the next one; the last one's at the tip.
+      // The cell of point k ends half-way to the next point, the cell of the last point at the tip.
       const double border = k + 1 < points ? 0.5 * (arc_of(k) + arc_of(k + 1)) : end;
       if (border <= at) continue;
       length(k, region) += std::min(border, end) - at;
@@ -35,18 +35,18 @@ core::MatX tributary_lengths(const mesh::Mesh& mesh, const InsertionState& state
 
 namespace {
 
-/// A coupling point as its rows are made: what its piece of path makes of it.
+/// A coupling point with what its rows need. Its piece is the part of the path nearest to it.
 struct PointOnPath
 {
   const CouplingPoint& point;
   const Site& site;
-  Friction friction;     ///< limits [N] and dashpot [N s/m] of its piece
-  double length = 0.0;   ///< of its piece in tissue [m]
-  bool lateral = false;  ///< it holds the shaft across,
-  double held = 0.0;     ///< with this length of path [m]
+  Friction friction;     ///< limits [N] and dashpot [N s/m] of the whole piece
+  double length = 0.0;   ///< length of the piece that lies in tissue [m]
+  bool lateral = false;  ///< the point holds the shaft laterally
+  double held = 0.0;     ///< length of path in tissue since the last lateral point [m]
 };
 
-/// The laws of the tissues that a point's piece of path is in.
+/// Friction of one point: for each tissue, its friction per length times its `lengths` [m], summed.
 Friction friction_of(const Ground& ground, bool withdrawing, const core::VecX& lengths)
 {
   Friction sum;
@@ -61,10 +61,10 @@ Friction friction_of(const Ground& ground, bool withdrawing, const core::VecX& l
   return sum;
 }
 
-/// Which points hold the shaft laterally: all, but when they stand closer than `merge` local edges
-/// along a path that is not straight, the first of all and the last one of each tet that the tip
-/// has left, which is where crossings would be. In a tet the displacement is linear, so that more
-/// points on a curve contradict each other by little, and fight it out with huge forces.
+/// Which points hold the shaft laterally. All do, unless they stand closer than `merge` local edges
+/// on a path that is not straight. Then only the very first point does, and the last point of each
+/// tet that the tip has left, near the face crossing. The displacement is linear within a tet, so
+/// more points on a curved path would contradict each other slightly and cause huge forces.
 std::vector<bool> lateral_points(const Ground& ground, const InsertionState& state)
 {
   const std::size_t count = state.points.size();
@@ -106,7 +106,7 @@ RadiusCorrection::Compliance radius_compliance(const Ground& ground, const Site&
                                                local_edge(ground.mesh, site.tet), length);
 }
 
-/// A material place and where it is on the shaft.
+/// A material place of the tissue and its projection on the shaft.
 struct Hold
 {
   Hold(const constraint::Anchor& anchor_of, const Iterate& at_iterate)
@@ -117,7 +117,7 @@ struct Hold
   {
   }
 
-  /// Between tissue and shaft in a direction, its gap the distance.
+  /// Row between tissue and shaft in `direction`; the gap is their distance in it.
   constraint::Row row(const Vec3& direction) const
   {
     auto made = constraint::Row::between({anchor, direction}, at.body,
@@ -132,7 +132,7 @@ struct Hold
   needle::ShaftPoint on_shaft;
 };
 
-/// Two rows across the shaft. Returns the first.
+/// Adds two rows normal to the shaft and returns the first.
 int add_lateral_rows(const Hold& hold, double compliance, const Vec3& start, int point,
                      constraint::Set& set)
 {
@@ -146,8 +146,8 @@ int add_lateral_rows(const Hold& hold, double compliance, const Vec3& start, int
   return first;
 }
 
-/// Dry friction and a dashpot, h/b its compliance (0: none), on one axial row each; `compliance` is
-/// that of the tissue next to the shaft [m/N], of which both laws' rows have a share.
+/// Adds one axial row for dry friction and one for a dashpot. `dashpot`: compliance h/b of the
+/// dashpot [m/N], 0: none. `compliance`: that of the tissue next to the shaft [m/N].
 void add_friction_rows(double dashpot, constraint::Row row, double compliance, PointRows& mine,
                        constraint::Set& set)
 {
@@ -158,7 +158,7 @@ void add_friction_rows(double dashpot, constraint::Row row, double compliance, P
   }
   if (mine.bound > 0.0) mine.axial = set.add(row, law::Law::box(mine.bound), mine.point);
   if (!(compliance > 0.0)) return;
-  // Both laws push the same piece of shaft: its way through the tissue is that of their sum.
+  // Both rows load the same piece of shaft: the tissue next to it yields to the sum of both forces.
   for (int row_of_law : {mine.viscous, mine.axial})
     if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, compliance});
   if (mine.viscous >= 0 && mine.axial >= 0)
@@ -192,8 +192,9 @@ PointRows add_point_rows(const Ground& ground, const PointOnPath& one, const Ite
   return mine;
 }
 
-/// How far along its way from the first point a tip has passed the last place that may hold the
-/// needle: whole numbers of half edges, and below one its half, quarter, eighth.
+/// Distance from the first point to the place of the lever rows [m]: the largest multiple of `half`
+/// (half a local edge) that the tip has passed, else 1/2, 1/4 or 1/8 of `half`; 0: none of these.
+/// `way`: distance from the first point to the tip [m].
 double passed_part(double way, double half)
 {
   constexpr double least = 1.0 / 8.0;
@@ -204,12 +205,11 @@ double passed_part(double way, double half)
   return 0.0;
 }
 
-/// A needle that one point alone holds could turn about it, until its tip meets the next place for
-/// one. Until then the last half edge that the tip has passed, or within the first one a part of
-/// it, holds it as well: a material place, that does not go along with the tip. A tet holds its
-/// places together as a body of its own size, however near to each other they are: within the first
-/// half edge the rows give way by what is missing. Returns the first of two rows; -1: none is
-/// passed.
+/// A needle held by a single point would turn about it. Until the tip meets the next site, two
+/// lateral rows hold the shaft at a second place: see `passed_part`. This place is material: it
+/// does not move along with the tip. A tet resists turning as if the two places were half a local
+/// edge apart, however near they are. Nearer places therefore get a compliance (docs/theory.md
+/// section 4). Returns the first of the two rows, or -1 when the tip has passed no such place.
 int add_lever_rows(const Ground& ground, const InsertionState& state, const Iterate& at,
                    constraint::Set& set)
 {
@@ -219,7 +219,7 @@ int add_lever_rows(const Ground& ground, const InsertionState& state, const Iter
   if (passed == 0.0) return -1;
   const std::optional<Site> tip = site_at(state.path, ground.mesh, held.arc + passed);
   if (!tip || tip->arc - held.arc < 0.5 * std::min(passed, half))
-    return -1;  // the way is mostly through a void
+    return -1;  // most of the way lies in a void
   const double compliance =
       radius_compliance(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral +
       lever_compliance(ground.elasticity(tip->tet), passed, half);
@@ -259,10 +259,10 @@ void accept_point(double tolerance, CouplingPoint& point, const PointRows& rows,
     report.friction_work += multipliers.lambda[row] * multipliers.delta[row];
   }
   report.shaft_friction += point.lambda[2];
-  const int axial = std::max(rows.axial, rows.viscous);  // both see the same slip
-  // What nothing holds follows the shaft.
+  const int axial = std::max(rows.axial, rows.viscous);  // both rows have the same slip
+  // A point without axial row slips freely, by its whole axial gap.
   const double slip = axial < 0 ? rows.slid : multipliers.delta[axial];
-  // A point below its friction bound sticks, even if an unfinished iteration left a gap.
+  // A point below its friction bound sticks, even if the solver's tolerance left it a gap.
   const bool inside = rows.axial >= 0 && rows.bound > 0.0 &&
                       std::abs(multipliers.lambda[rows.axial]) < rows.bound * (1.0 - 1e-9);
   point.stuck = inside || std::abs(slip) <= tolerance;

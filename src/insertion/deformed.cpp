@@ -9,7 +9,7 @@
 namespace trocar::insertion {
 namespace {
 
-constexpr double inside = -1e-6;  ///< barycentric slack of "in the tet", as for the path
+constexpr double inside = -1e-6;  ///< least coordinate that counts as in the tet, as in clip.cpp
 
 }  // namespace
 
@@ -75,10 +75,11 @@ std::optional<Vec3> Deformed::reference_place(const Vec3& x, const Vec3& guess) 
   return search(candidates(x, x));
 }
 
-/// Where the segment P Q goes into a quadratic tet whose corners' tet it goes into at `t`, over
-/// `stretch` of it: the zero of that face's coordinate along it, by the secant. Through an edge it
-/// may be either of two faces; one that the segment lies in is none. Nothing where there is no zero
-/// near.
+/// Where the segment P Q enters a quadratic tet. It enters the flat tet of the corners at `t` and
+/// stays in it over `stretch` (both in units of the segment). The entry is the zero of the face's
+/// local coordinate along the segment, found by the secant method. At an edge two faces compete,
+/// and the one met first counts. A face that the segment lies in does not count. Nothing when no
+/// zero is near.
 std::optional<double> Deformed::through_curved_face(int tet, const Vec3& P, const Vec3& Q, double t,
                                                     double stretch) const
 {
@@ -113,9 +114,9 @@ Vec3 Deformed::reference_place_continued(const Vec3& x, int tet) const
   return pull_back(tet, x);
 }
 
-/// Where a way through the tissue begins. Through an edge or a corner it begins in many tets at
-/// once, and rounding must not choose among them: on curved faces it is the first place, and in
-/// the tet that comes first in the mesh.
+/// Entry of one way through the tissue. `starts`: the tets in which it begins, several at an edge
+/// or a corner. Rounding must not choose among them: on curved faces the first place counts, and a
+/// tie goes to the tet that comes first in the mesh.
 Deformed::Entry Deformed::entry_of(std::vector<Stretch> starts, const Vec3& P, const Vec3& Q) const
 {
   constexpr double same = 1e-9;
@@ -146,7 +147,7 @@ std::vector<Deformed::Entry> Deformed::entries(const Vec3& P, const Vec3& Q) con
   std::sort(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
     return a.low != b.low ? a.low < b.low : a.tet < b.tet;
   });
-  // Stretches that touch are one way through the tissue; it begins at the surface.
+  // Stretches that touch form one way through the tissue, which begins at the surface.
   constexpr double touch = 1e-6;
   std::vector<Entry> found;
   for (std::size_t i = 0; i < stretches.size();) {

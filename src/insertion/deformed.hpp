@@ -9,8 +9,8 @@
 
 namespace trocar::insertion {
 
-/// The tissue as it stands: reference mesh plus displacement of every node. Maps between places in
-/// the world and in the reference. Equal on every rank; not collective. Borrows everything.
+/// The deformed tissue: reference mesh plus displacement of every node. Maps between places in the
+/// world and in the reference. Equal on every rank; not collective. Borrows everything.
 class Deformed
 {
  public:
@@ -20,21 +20,21 @@ class Deformed
 
   Vec3 place(const Vec3& X, int tet) const;  ///< where the reference place X in a tet is now [m]
 
-  /// Reference place of the world point x, searched near the reference place `guess`; nothing when
-  /// x is in no tet.
+  /// Reference place of the world point x, searched first around the reference place `guess`;
+  /// nothing when x is in no tet.
   std::optional<Vec3> reference_place(const Vec3& x, const Vec3& guess) const;
 
-  /// As above with the map of one tet continued beyond its faces: for a tip that has left.
+  /// The same with the map of one tet, extrapolated beyond its faces: for a tip outside the tissue.
   Vec3 reference_place_continued(const Vec3& x, int tet) const;
 
-  /// Where a segment goes into the tissue: reference place there, and the last tet it passes before
-  /// it is out again, or ends.
+  /// Where a segment enters the tissue: the reference place X of the entry, and the last tet that
+  /// the segment passes before it leaves the tissue or ends.
   struct Entry
   {
     Vec3 X;
     int last_tet;
   };
-  /// The places where the world segment from P, outside, to Q goes into the tissue, in order.
+  /// All entries of the world segment from P, outside the tissue, to Q, in order.
   std::vector<Entry> entries(const Vec3& P, const Vec3& Q) const;
 
   /// True when the world segment P Q meets the tissue at all.
@@ -58,7 +58,7 @@ class Deformed
   const mesh::Mesh* mesh_;
   const mesh::Locator* locator_;
   const fem::GlobalField* u_;
-  double largest_displacement_;  ///< [m], bounds how far a tet is from its reference box
+  double largest_displacement_;  ///< [m]; bounds how far a tet leaves its reference box
 };
 
 }  // namespace trocar::insertion

@@ -9,11 +9,11 @@
 
 namespace trocar::insertion {
 
-/// Shaft friction per length of one tissue in one direction (docs/theory.md section 5).
+/// Shaft friction per length in one tissue and direction of motion (docs/theory.md section 5).
 struct Friction
 {
-  double static_limit = 0.0;   ///< F/ℓ of a point that stuck at the start of the step [N/m]
-  double dynamic_limit = 0.0;  ///< F/ℓ of a slipping point [N/m]
+  double static_limit = 0.0;   ///< bound F/ℓ of a point stuck at the start of the step [N/m]
+  double dynamic_limit = 0.0;  ///< bound F/ℓ of a slipping point [N/m]
   double viscous = 0.0;        ///< b: force per length and slip velocity [N s/m²]
 };
 
@@ -26,35 +26,36 @@ struct TissueFriction
 struct InsertionSettings
 {
   PlacementSettings placement;
-  std::vector<TissueFriction> friction;  ///< by volume of the mesh
-  double eta = 0.0;  ///< > 0: the axial force is η times that of sticking, instead of all friction
-  double stick_tolerance = 1e-9;  ///< |δ| below which a point has stuck [m]
+  std::vector<TissueFriction> friction;  ///< by physical volume of the mesh
+  double eta = 0.0;  ///< > 0 replaces all friction: the axial force is η times that of sticking
+  double stick_tolerance = 1e-9;  ///< |δ| up to which a point counts as stuck [m]
   TipSettings tip{};
   PunctureSettings puncture{};
   std::optional<RadiusCorrection> radius_correction{};
 };
 
-/// What needles go into: the mesh, and what it does to them. Borrows mesh and locator. Nothing of
-/// this room is collective: every rank computes the same from the same.
+/// What needles go into: the mesh with its resistance to tips and shafts. Borrows mesh and locator.
+/// Nothing in this room is collective: every rank computes the same results from the same numbers.
 struct Ground
 {
-  /// `tissues`: by volume of the mesh.
+  /// `tissues`: by physical volume of the mesh.
   Ground(const mesh::Mesh& mesh, const mesh::Locator& locator, InsertionSettings settings,
          std::vector<Elasticity> tissues);
 
-  /// f_cut of the tissue a tet belongs to [N]; 0 in none (-1).
+  /// f_cut of the tissue that a tet belongs to [N]; 0 outside the tissue (tet -1).
   double cutting(int tet) const;
-  const Elasticity& elasticity(int tet) const;  ///< of the tissue a tet belongs to
-  /// Force it takes to go at X from one tet into another (-1: none) [N]: a membrane's threshold,
-  /// and what is cut with a force is not entered without it.
+  const Elasticity& elasticity(int tet) const;  ///< of the tissue that a tet belongs to
+  /// Force that a tip needs to go from one tet into another (-1: no tissue) at the reference place
+  /// X [N]: the membrane's threshold, and at least f_cut of `to` unless `from` is cut with a force
+  /// too.
   double border(int from, int to, const Vec3& X) const;
 
   const mesh::Mesh& mesh;
   const mesh::Locator& locator;
   InsertionSettings settings;
-  std::vector<Elasticity> tissues;  ///< by volume of the mesh
+  std::vector<Elasticity> tissues;  ///< by physical volume of the mesh
   Membranes membranes;
-  bool resists = false;  ///< some border or tissue resists the tip
+  bool resists = false;  ///< some membrane or tissue of the mesh resists the tip
 };
 
 }  // namespace trocar::insertion

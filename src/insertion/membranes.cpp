@@ -18,19 +18,20 @@ Membranes::Membranes(const mesh::Mesh& mesh, PunctureSettings settings)
   for (std::size_t s = 0; s < settings_.surface.size(); ++s)
     for (mesh::Face face : mesh.surfaces[s].faces) {
       std::sort(face.begin(), face.end());
-      // A face of two surfaces takes the larger threshold.
+      // A face that belongs to two surfaces takes the larger threshold.
       const auto [at, fresh] = tagged_.try_emplace(face, settings_.surface[s]);
       if (!fresh) at->second = std::max(at->second, settings_.surface[s]);
     }
 }
 
-/// Threshold of the tagged face of a tet on which X lies; -1 when its surface has none of its own,
-/// -2 when X lies on no tagged face.
+/// Threshold of the physical surface that contains the face of the tet on which X lies. -1: that
+/// surface has no threshold of its own. -2: X lies on no face of a physical surface.
 double Membranes::of_surface(int tet, const Vec3& X) const
 {
   if (tet < 0) return -2.0;
   const mesh::Tet& nodes = mesh_->tets[static_cast<std::size_t>(tet)];
-  // Paths cross the chords of curved faces; a tip enters where the face itself is.
+  // At a curved face, X may lie on the flat face between the corners, where paths cross, or on the
+  // curved face itself, where a tip enters the tissue.
   const Eigen::Vector4d at_chord = mesh::barycentric(mesh::corners(*mesh_, tet), X);
   const Eigen::Vector4d at_face = mesh::local_coordinates(mesh::positions(*mesh_, tet), X);
   const Eigen::Vector4d weight = at_chord.cwiseAbs().cwiseMin(at_face.cwiseAbs());
@@ -54,7 +55,7 @@ double Membranes::threshold(int from, int to, const Vec3& X) const
   const auto region = [&](int tet) {
     return tet < 0 ? -1 : mesh_->region[static_cast<std::size_t>(tet)];
   };
-  // Inside one volume only a tagged face is a membrane.
+  // Inside one volume only a face of a physical surface is a membrane.
   if (region(from) == region(to) && surface < -1.5) return 0.0;
   const int volume = region(to) >= 0 ? region(to) : region(from);
   return volume < 0 ? 0.0 : settings_.volume[static_cast<std::size_t>(volume)];

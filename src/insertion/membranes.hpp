@@ -9,16 +9,17 @@ namespace trocar::insertion {
 
 using core::Vec3;
 
-/// Force that pierces what the tip comes to, f_p >= 0 [N].
+/// Forces f_p >= 0 at which membranes are pierced [N].
 struct PunctureSettings
 {
-  std::vector<double> volume;   ///< by volume of the mesh: the skin around it
-  std::vector<double> surface;  ///< by physical surface of the mesh; -1: as the volume says
+  std::vector<double> volume;   ///< by physical volume of the mesh: f_p of its boundary
+  std::vector<double> surface;  ///< by physical surface of the mesh; -1: f_p of the volume
 };
 
 /// The faces that must be punctured: the surface of the tissue (outside, cavity walls), faces
-/// between two volumes, and those of physical surfaces inside a volume. A face takes the threshold
-/// of its physical surface, else that of the volume entered; on the way out, of the volume left.
+/// between two volumes, and faces of physical surfaces inside a volume. A face has the threshold of
+/// its physical surface. Without one it has the threshold of the volume that the tip enters or, on
+/// the way out of the tissue, of the volume that it leaves.
 class Membranes
 {
  public:
@@ -27,8 +28,8 @@ class Membranes
 
   bool any() const { return any_; }
 
-  /// f_p [N] for going at the reference place X from one tet into another (-1: no tissue);
-  /// 0: nothing is in the way.
+  /// f_p [N] of the membrane between two tets (-1: no tissue) at the reference place X; 0: no
+  /// membrane.
   double threshold(int from, int to, const Vec3& X) const;
 
  private:
@@ -37,7 +38,7 @@ class Membranes
   const mesh::Mesh* mesh_;
   PunctureSettings settings_;
   bool any_ = false;
-  std::map<mesh::Face, double> tagged_;  ///< sorted nodes of a surface's faces -> its threshold
+  std::map<mesh::Face, double> tagged_;  ///< sorted corners -> f_p of the physical surface
 };
 
 }  // namespace trocar::insertion

@@ -10,12 +10,12 @@
 namespace trocar::insertion {
 namespace {
 
-/// A tet the segment's line passes through, over [low, high] in units of the segment.
+/// A tet that the line of a segment passes through, from t = low to high (segment: 0 to 1).
 struct Passage
 {
   int tet;
   double low, high;
-  double tolerance;  ///< in units of the segment
+  double tolerance;  ///< `arc_tolerance` over the length of the segment
 };
 
 std::vector<Passage> passages(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& P,
@@ -41,7 +41,7 @@ struct Crossing
   double tolerance;
 };
 
-/// Distinct crossings in order. Two tets that share a face report it twice, a vertex many times.
+/// Distinct crossings in order. Both tets of a face report it, and many tets report a vertex.
 std::vector<Crossing> crossings_of(const std::vector<Passage>& passages)
 {
   std::vector<Crossing> all;
@@ -60,7 +60,7 @@ std::vector<Crossing> crossings_of(const std::vector<Passage>& passages)
 
 int lowest_tet_at(const std::vector<Passage>& passages, double t, double slack_factor)
 {
-  for (const Passage& p : passages)  // ascending tets: ties go to the lowest
+  for (const Passage& p : passages)  // ascending tets: the lowest wins a tie
     if (t >= p.low - slack_factor * p.tolerance && t <= p.high + slack_factor * p.tolerance)
       return p.tet;
   return -1;
@@ -71,7 +71,7 @@ void add_pieces(Path& path, const std::vector<Passage>& passages,
 {
   std::vector<double> cuts{0.0};
   for (const Crossing& c : crossings)
-    // What is closer to an end than the tolerance is that end: no sliver of a piece.
+    // A crossing within the tolerance of the last cut or of the end would make a sliver: no cut.
     if (c.t > cuts.back() + c.tolerance && c.t < 1.0 - c.tolerance) cuts.push_back(c.t);
   cuts.push_back(1.0);
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
@@ -88,7 +88,7 @@ Site site_in(const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
   Site site{arc, tet, {{nodes.begin(), nodes.end()}, {}}};
   Eigen::Vector4d at = mesh::local_coordinates(mesh::positions(mesh, tet), X);
   for (int a = 0; a < 4; ++a)
-    if (at[a] < relative_tolerance) at[a] = 0.0;  // on a face: the nodes off it are free
+    if (at[a] < relative_tolerance) at[a] = 0.0;  // X is on the face: nodes off it get no weight
   site.anchor.weight = mesh::node_weights(mesh, at / at.sum());
   return site;
 }
@@ -98,7 +98,8 @@ void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec
   path.sites.push_back(site_in(mesh, tet, arc, X));
 }
 
-/// Where sites may stand: crossings, and in quadratic tets the middles of the pieces, on [0, 1].
+/// A place where a site may stand, 0 <= t <= 1: a crossing or, in a quadratic tet, the middle of
+/// the passage.
 struct Candidate
 {
   double t;
@@ -160,7 +161,7 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
   for (const Candidate& c : candidates(mesh, tets, crossings)) {
     if (settings.placement != Placement::crossings) break;
     const double arc = begin + c.t * length;
-    // The tolerance keeps an exact tie from being decided by round-off.
+    // Lowered by the tolerance, so that round-off does not decide an exact tie.
     const double shortest =
         std::max(settings.merge * local_edge(mesh, c.tet) * (1.0 - relative_tolerance),
                  c.tolerance * length);

@@ -16,11 +16,11 @@ enum class Placement { crossings, spacing };
 struct PlacementSettings
 {
   Placement placement = Placement::crossings;
-  double spacing = 0.005;  ///< [m]
-  double merge = 0.3;      ///< pieces shorter than merge · local edge drop the newer point
+  double spacing = 0.005;  ///< of points along the path, for `Placement::spacing` [m]
+  double merge = 0.3;      ///< of two points closer than merge · local edge the newer is dropped
 };
 
-/// A stretch of the path in one tet, or in none (outside, a void).
+/// A stretch of the path in one tet, or outside the tissue (also in a void).
 struct Piece
 {
   double begin, end;  ///< arc length along the path [m]
@@ -36,13 +36,13 @@ struct Piece
   }
 };
 
-/// A material place on the path where a coupling point may stand. `first_id` of the path plus its
-/// index is its identity for the whole run.
+/// A material place on the path where a coupling point may stand. Path::first_id plus the index in
+/// Path::sites identifies a site for the whole run.
 struct Site
 {
   double arc;  ///< [m] from the start of the path
   int tet;
-  constraint::Anchor anchor;  ///< weights of faces' opposite nodes are exactly 0
+  constraint::Anchor anchor;  ///< of a site on a face, nodes off the face have weight exactly 0
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>
@@ -54,16 +54,16 @@ struct Site
   }
 };
 
-/// The channel the tip has cut, in *reference* coordinates: it does not move when the tissue does.
-/// A value; it only grows at its end.
+/// The channel that the tip has cut, in *reference* coordinates: a path does not move when the
+/// tissue does. A value; a path only grows at its end.
 struct Path
 {
   std::vector<Vec3> vertex;       ///< polyline [m]
   std::vector<double> arc;        ///< arc length at each vertex [m]
   std::vector<Piece> pieces;      ///< in order, covering 0 .. length()
-  std::vector<double> crossings;  ///< arcs of all face crossings, before merging
-  std::vector<Site> sites;        ///< by arc
-  int first_id = 0;               ///< identity of sites[0]; a new channel goes on counting
+  std::vector<double> crossings;  ///< arcs of all face crossings, before merging [m]
+  std::vector<Site> sites;        ///< in order of arc
+  int first_id = 0;               ///< number of sites[0]; a new channel continues the numbering
 
   bool empty() const { return vertex.empty(); }
   double length() const { return arc.empty() ? 0.0 : arc.back(); }
@@ -81,15 +81,15 @@ struct Path
   }
 };
 
-/// Appends the straight segment from the end of the path to X (reference), finds the faces it
-/// crosses and places sites. Predicates use half-open intervals with a tolerance of 1e-6 of the
-/// local edge, so that neither round-off nor the number of ranks decides about a tie: a crossing
-/// up to the tolerance beyond X counts as reached. A path starts as its first vertex.
+/// Appends the straight segment from the end of the path to X (reference), finds the faces that the
+/// segment crosses and places sites. An empty path takes X as its first vertex. Predicates use
+/// half-open intervals with a tolerance of 1e-6 of the local edge, so that neither round-off nor
+/// the number of ranks decides a tie: a crossing up to the tolerance beyond X counts as reached.
 void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator& locator,
           const PlacementSettings& settings);
 
-/// The material place of the path at `arc`, or where it last was in tissue before that; nothing
-/// when it never was.
+/// The material place on the path at `arc` [m]. Where the path lies outside the tissue there, the
+/// last place before `arc` that lies in tissue; nothing when there is none.
 std::optional<Site> site_at(const Path& path, const mesh::Mesh& mesh, double arc);
 
 /// Length of the path up to `arc` that lies in tissue [m].
@@ -98,24 +98,24 @@ double tissue_length(const Path& path, double arc);
 /// True when all vertices lie on one line, to 1e-9 of the length.
 bool straight(const Path& path);
 
-/// Arc length of the point of the path nearest to X; the first and last segments go on beyond
-/// their ends, so that the result may be negative or more than the length.
+/// Arc length of the point of the path nearest to X [m]. The first and the last segment are
+/// extended beyond the ends of the path, so the result may be negative or exceed the length.
 double arc_nearest(const Path& path, const Vec3& X);
 
-/// Distance of X from the path itself [m].
+/// Distance of X from the path, not extended beyond its ends [m].
 double distance(const Path& path, const Vec3& X);
 
-/// First and last tet of the path, where the needle goes in and where its end is; -1: in none.
+/// First and last tet that the path passes through; -1: none.
 int first_tet(const Path& path);
 int last_tet(const Path& path);
 
-/// Part of the local edge below which two places are one.
+/// Places closer than this part of the local edge count as one.
 inline constexpr double relative_tolerance = 1e-6;
 
-/// Mean edge of a tet [m], of a quadratic one half of it: the measure of everything "local".
+/// The local edge [m]: the mean edge of a tet, halved when the tet is quadratic.
 double local_edge(const mesh::Mesh& mesh, int tet);
 
-/// Arc tolerance below which two places are one [m].
+/// Distance along the path below which two places count as one [m].
 double arc_tolerance(const mesh::Mesh& mesh, int tet);
 
 }  // namespace trocar::insertion

@@ -15,8 +15,8 @@ RadiusCorrection::Compliance RadiusCorrection::at(int needle, const Elasticity& 
 {
   const double r = radius[static_cast<std::size_t>(needle)];
   if (!(length > 0.0)) return {};
-  // ln q where q > 1, and down to nothing without a corner: rows of no compliance beside soft ones
-  // would take the load of these.
+  // A smooth form of max(ln q, 0). With a corner at q = 1, rows without compliance would take over
+  // the load of compliant rows beside them (docs/theory.md section 11).
   const double q = fit * edge / r;
   const double drop = 0.25 * std::log1p(q * q * q * q);
   const double axial = drop / (2.0 * std::numbers::pi * tissue.shear * length);

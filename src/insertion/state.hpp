@@ -7,16 +7,17 @@
 
 namespace trocar::insertion {
 
-/// `contact`: the tip presses on the surface, which is not punctured yet; the path is that place.
+/// `contact`: the tip presses on the surface, which is not punctured yet, and the path consists of
+/// that one place. `withdrawn`: the tip has left its channel, which is kept.
 enum class Phase { outside, contact, inserted, withdrawn };
 
 /// State of one coupling point: a material place of the tissue held by the shaft. A point is born
-/// when the tip passes it, slipping, as if it had slipped for the whole step.
+/// when the tip passes its site, and counts as having slipped for the whole of that step.
 struct CouplingPoint
 {
-  int site = 0;                ///< index in Path::sites, its identity
-  double needle_arc = 0.0;     ///< arc length on the needle it sticks to [m]; moves only in slip
-  bool stuck = true;           ///< at the end of the last step
+  int site = 0;                ///< index in Path::sites; identifies the point
+  double needle_arc = 0.0;     ///< place on the needle where it sticks [m]; changes only in slip
+  bool stuck = true;           ///< true: no slip in the last step
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
 
   /// See core/visit.hpp.
@@ -37,10 +38,10 @@ struct InsertionState
   Path path;
   double tip_arc = 0.0;               ///< where the tip is along the path [m]
   bool withdrawing = false;           ///< the tip last moved backwards along the path
-  std::vector<CouplingPoint> points;  ///< by site, all at or behind the tip
+  std::vector<CouplingPoint> points;  ///< in order of site, all at or behind the tip
   TipState tip;
 
-  bool touches() const { return tip.pressed || !points.empty(); }  ///< rows are to be made
+  bool touches() const { return tip.pressed || !points.empty(); }  ///< it needs rows
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>

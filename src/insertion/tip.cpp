@@ -9,14 +9,14 @@
 namespace trocar::insertion {
 namespace {
 
-/// One of each opposite pair of samples of the unit disc normal to e_x (`flat`) or unit ball.
+/// Samples of the unit ball or (`flat`) of the unit disc normal to e_x, one of each opposite pair.
 std::vector<Vec3> half_samples(bool flat)
 {
   std::vector<Vec3> samples;
   if (flat) {
     constexpr int rings = 6, spokes = 6;
     for (int ring = 0; ring < rings; ++ring) {
-      // Equal shares of the force: F(<r)/F = 1 - (1 - r²)^(3/2).
+      // Every ring carries an equal share of Hertz's force: F(<r)/F = 1 - (1 - r²)^(3/2).
       const double share = (ring + 0.5) / rings;
       const double r = std::sqrt(1.0 - std::cbrt((1.0 - share) * (1.0 - share)));
       for (int spoke = 0; spoke < spokes; ++spoke) {
@@ -62,7 +62,7 @@ constraint::Anchor tip_support(const mesh::Mesh& mesh, const mesh::Locator& loca
   constraint::Anchor anchor;
   anchor.weight.resize(static_cast<Eigen::Index>(weight.size()));
   for (const auto& [node, share] : weight) {
-    // Places on a face have round-off for the weight of the opposite node.
+    // A place on a face gives the opposite node a weight that is only round-off: make it 0.
     anchor.weight[static_cast<Eigen::Index>(anchor.node.size())] =
         std::abs(share) < 1e-9 * sum ? 0.0 : share / sum;
     anchor.node.push_back(node);
@@ -84,7 +84,7 @@ TipRows add_tip_rows(const TipState& tip, const TipLaw& law, const Iterate& at,
     row.start = start;
     return row;
   };
-  // On a surface the point touches, not yet the face behind it.
+  // On a surface only the point of the tip touches, not yet its bevel face: m is the tangent alone.
   const Vec3 ahead = end.tangent + (law.on_surface ? 0.0 : at.shaft.bevel) * end.normal_1;
   constraint::Row axial = aim(ahead, tip.lambda[2]);
   if (!law.on_surface) {

@@ -29,8 +29,8 @@ core::Mat3 frame_of(const needle::ShaftPoint& end)
   return frame;
 }
 
-/// The normal first, then what the needle's own normals have across it: the frame turns with body
-/// and needle.
+/// Frame of a disc: first the face normal, then a normal of the needle projected into the face. So
+/// results do not change when mesh and needle are rotated together.
 core::Mat3 disc_frame(const Vec3& normal, const needle::ShaftPoint& end)
 {
   const auto across = [&](const Vec3& d) -> Vec3 { return d - normal.dot(d) * normal; };
@@ -81,7 +81,8 @@ void grow_to(const Ground& ground, InsertionState& state, const Vec3& X)
     const double part = (arc - before.length()) / (X - before.vertex.back()).norm();
     const Vec3 place = before.vertex.back() + part * (X - before.vertex.back());
     const double threshold = ground.border(from, to, place);
-    // Oblique to a membrane the path may weave through it: pierced is pierced, an edge around.
+    // An oblique path may cross the faces of one membrane several times: up to an edge (or the
+    // tip's radius) beyond the pierced place, a border with the same force counts as pierced.
     const bool pierced = threshold == state.tip.pierced_force &&
                          arc <= state.tip.pierced_arc + std::max(ground.settings.tip.radius, edge);
     if (threshold <= 0.0 || pierced) continue;
@@ -141,8 +142,8 @@ void leave_surface(InsertionState& state)
   state.tip.pressed = false;
 }
 
-/// The tip, pressed on a surface, stands on it where its axis meets it now; beside the body there
-/// is none, and the tip has left. True when it stands.
+/// Moves a tip pressed on a surface to the place where its axis meets the surface now. Where there
+/// is no such place or nothing resists, the tip leaves the surface. True when the tip stays on it.
 bool stand(const Ground& ground, InsertionState& state, const needle::Shaft& shaft,
            const Deformed& tissue)
 {
@@ -162,14 +163,14 @@ bool stand(const Ground& ground, InsertionState& state, const needle::Shaft& sha
   return state.tip.pressed;
 }
 
-/// The reference place of a tip at the end of its path.
+/// Reference place of a tip at the end of its path; extrapolated when the tip is in no tet.
 Vec3 reference_of(const Vec3& tip, const InsertionState& state, const Deformed& tissue)
 {
   const auto inside = tissue.reference_place(tip, state.path.vertex.back());
   return inside ? *inside : tissue.reference_place_continued(tip, state.tip.tet);
 }
 
-/// The tissue has yielded: what the tip stood at is pierced, and the channel goes on to it.
+/// The tissue has yielded: the border before the tip is pierced, and the channel grows to the tip.
 void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
               const needle::Shaft& shaft, const Deformed& tissue)
 {
@@ -183,8 +184,8 @@ void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
   grow_to(ground, state, X);
   state.phase = Phase::inserted;
   press(ground, state, state.path.length(), shaft, tissue);
-  // Where the tissue gave way to the tip it is closed on it, in the bevel's direction as well. A
-  // border on its way the tip is beyond by the rest of its advance: to that the next step opens.
+  // The gap at the new end of the channel is closed, also in the bevel's direction. A tip stopped
+  // by a border is beyond it by the rest of its advance: its gap starts at minus this rest.
   if (state.tip.pressed) {
     state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
     const Vec3 end = tissue.place(state.path.vertex.back(), state.tip.tet);
@@ -194,8 +195,8 @@ void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
   state.tip_arc = state.path.length();
   const std::size_t known = state.points.size();
   add_points_behind(ground.mesh, state, state.path.length(), shaft.length);
-  // The step is over: new points stand where they are on the shaft, which under load is a little
-  // ahead of where the path says.
+  // The step is over, so the projection of a new point on the shaft gives its needle_arc. Under
+  // load this is a little ahead of the value computed from arcs on the path.
   for (std::size_t k = known; k < state.points.size(); ++k) {
     const Site& site = state.path.sites[static_cast<std::size_t>(state.points[k].site)];
     state.points[k].needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
@@ -216,7 +217,8 @@ void settle_tip(const Ground& ground, InsertionState& state, const CouplingRepor
     state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
     return;
   }
-  // On a surface the channel begins where the axis meets it; else it ends where the tip is.
+  // On a surface the channel begins where the axis meets it and is as deep as the tip's row
+  // advanced. Elsewhere the channel ends at the tip.
   Vec3 tip = shaft.tip() + lead(state, shaft, tissue);
   if (on_surface)
     tip = tissue.place(state.path.vertex.back(), state.tip.tet) - report.tip_gap * tangent;

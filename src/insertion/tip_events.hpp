@@ -3,33 +3,34 @@
 #include "insertion/coupling.hpp"
 #include "insertion/deformed.hpp"
 
-// What the tip meets and what becomes of it: borders, pressing, sliding, cutting.
+// Events of the tip: it meets borders, presses on them, slides and cuts.
 namespace trocar::insertion {
 
-/// The tip stands on the surface at X, which is the path from now on.
+/// Puts the tip on the surface at X (reference); a new path begins there.
 void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X,
                    const needle::Shaft& shaft);
 
-/// Grows the path towards X, but not through a border that resists: there it ends, and that
-/// border's force is what the tip meets.
+/// Grows the path to X (reference), or only to the first border that resists. That border's force
+/// then is the tip's threshold.
 void grow_to(const Ground& ground, InsertionState& state, const Vec3& X);
 
 /// Force at which the tissue at the end of the path yields [N]; 0: nothing resists.
 double resistance(const Ground& ground, const InsertionState& state);
 
-/// A tip that comes to the end of its path where something resists is pressed from then on, until
-/// it comes apart. Its gap counts from that place.
+/// Decides whether the tip is pressed. A tip at `arc` [m] becomes pressed at the end of its path if
+/// something resists there, and stays so until it comes apart. Its gap is measured from that place.
 void press(const Ground& ground, InsertionState& state, double arc, const needle::Shaft& shaft,
            const Deformed& tissue);
 
-/// How far along the shaft the place a pressed tip stands on lies ahead of where it would close the
-/// gap: under load the place yields more than the mean of the support, by which the gap is
-/// measured.
+/// Vector along the shaft from where a pressed tip closes its gap to the end of its path now [m];
+/// zero for a tip that is not pressed. The gap is measured to the mean of the support, and under
+/// load the end of the path moves farther than this mean.
 Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue);
 
-/// What the tip did in the step, once shaft and tissue are where they end: where the tissue
-/// yielded the path grows by the tip's advance, up to the next border; on a surface it touches
-/// where it slid to; a tip that came apart is where it is.
+/// Updates path and tip after the solve, with shaft and tissue at the end of the step. Where the
+/// tissue yielded, the path grows by the tip's advance, up to the next border. A tip that slid on a
+/// surface touches it where it now is. A tip that came apart leaves the surface, or gets its
+/// present place on the path.
 void settle_tip(const Ground& ground, InsertionState& state, const CouplingReport& report,
                 const needle::Shaft& shaft, const Deformed& tissue);
 
