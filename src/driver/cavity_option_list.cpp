@@ -50,7 +50,8 @@ std::vector<OptionSpec> model_and_solver()
       positive("cavity_tolerance", "1e-12", "1", "volume error as a part of the volume"),
       not_negative("cavity_gain", "0", "Pa",
                    "K_p of solver proportional; 0 = from a sweep of the cavity at rest"),
-      count("cavity_max_updates", "1000", 1, 1e9, "pressure updates for one linearisation of a step"),
+      count("cavity_max_updates", "1000", 1, 1e9,
+            "pressure updates for one linearisation of a step"),
       not_negative("cavity_alarm", "0", "Pa",
                    "change of pressure since the start that sets the alarm; 0 = off"),
   };

@@ -52,8 +52,8 @@ TEST(Groups, AVolumeInTheirPlaceIsAnsweredWithAllOfThem)
             std::string::npos);
 }
 
-// What is left of a mesh without one of its volumes is in the same unit, from the same file, and has
-// the same remarks.
+// What is left of a mesh without one of its volumes is in the same unit, from the same file, and
+// has the same remarks.
 TEST(Hollow, KeepsWhatTheMeshIs)
 {
   mesh::Mesh mesh = test::block({2, 2, 2, core::Vec3(0.2, 0.2, 0.2)});
