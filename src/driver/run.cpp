@@ -10,6 +10,7 @@
 #include "driver/log.hpp"
 #include "driver/option_list.hpp"
 #include "driver/petsc_options.hpp"
+#include "driver/provenance.hpp"
 #include "driver/reports.hpp"
 #include "driver/restart.hpp"
 #include "driver/signals.hpp"
@@ -136,9 +137,11 @@ void begin_log(const Log& log, const Invocation& invocation, const Scenario& sce
   if (!invocation.outdated.empty())
     log.note("-edges and -edge_* are -conduits and -conduit_* now; the old names, here -" +
              invocation.outdated.front() + ", go with the next version");
-  if (from)
-    log.note("goes on after step " + std::to_string(from->time.accepted) +
-             ", t = " + core::shown(from->time.now) + " s, of " + scenario.restart.folder);
+  if (!from) return;
+  log.note("goes on after step " + std::to_string(from->time.accepted) +
+           ", t = " + core::shown(from->time.now) + " s, of " + scenario.restart.folder);
+  if (from->version != build_description())  // known on rank 0, which is the one that speaks
+    log.note("note: the checkpoint was written by " + from->version);
 }
 
 /// The checkpoint is that of the end. A branch would be an empty folder.
