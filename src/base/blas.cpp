@@ -1,7 +1,7 @@
 #include "base/blas.hpp"
 
 #include <petscsys.h>
-// after petscsys.h, on which it leans
+// must come after petscsys.h, which it needs
 #include <petscblaslapack.h>
 
 #include <dlfcn.h>
@@ -24,7 +24,7 @@ PetscBLASInt integer(Eigen::Index n)
   return static_cast<PetscBLASInt>(n);
 }
 
-/// Leading dimension: never 0, not even of an empty block.
+/// Leading dimension for the BLAS, which demands at least 1 even for an empty block.
 PetscBLASInt stride(Eigen::Index n)
 {
   return static_cast<PetscBLASInt>(std::max<Eigen::Index>(n, 1));

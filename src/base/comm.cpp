@@ -12,7 +12,7 @@
 namespace trocar::base {
 namespace {
 
-/// A caught failure as plain data that can cross ranks.
+/// A caught failure as plain data that can be sent to other ranks.
 struct Caught
 {
   int code = 0;
@@ -59,7 +59,8 @@ double Comm::sum(double value) const
   return one[0];
 }
 
-// MPI may sum in any order, another one in another run. Rank by rank it is always the same.
+// MPI may sum in a different order in every run. Here the order is always that of the ranks, so
+// that results are reproducible.
 void Comm::sum(core::VecX& values) const
 {
   if (size_ == 1) return;

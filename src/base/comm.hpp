@@ -11,7 +11,7 @@
 
 namespace trocar::base {
 
-/// Borrowed communicator with its rank and size.
+/// A borrowed communicator with its rank and size.
 class Comm
 {
  public:
@@ -21,20 +21,20 @@ class Comm
   int size() const noexcept { return size_; }
   bool root() const noexcept { return rank_ == 0; }
 
-  double sum(double value) const;        ///< in the order of ranks; collective, equal on all
-  void sum(core::VecX& values) const;    ///< likewise, in place
-  double max(double value) const;        ///< collective
-  void max(core::VecX& values) const;    ///< collective, in place
-  long long sum(long long value) const;  ///< collective
+  double sum(double value) const;        ///< sum over all ranks, in their order; collective
+  void sum(core::VecX& values) const;    ///< the same for every entry, in place
+  double max(double value) const;        ///< largest of all ranks; collective
+  void max(core::VecX& values) const;    ///< the same for every entry, in place
+  long long sum(long long value) const;  ///< sum over all ranks; collective
   bool all(bool value) const;            ///< collective: true when it is true on every rank
-  bool any(bool value) const;            ///< collective
+  bool any(bool value) const;            ///< collective: true when it is true on some rank
 
-  /// Every rank's values, one behind the other in the order of ranks, on rank 0; nothing elsewhere.
-  /// Collective.
+  /// Joins the values of all ranks in the order of ranks. Rank 0 gets the result, other ranks get
+  /// an empty list. Collective.
   std::vector<double> gather(const std::vector<double>& values) const;
   std::vector<int> gather(const std::vector<int>& values) const;
 
-  /// Root's values on every rank; sizes may differ before the call. Collective.
+  /// Replaces the values on every rank by those of rank 0. Sizes may differ before. Collective.
   void broadcast(std::vector<double>& values) const;
   void broadcast(std::vector<int>& values) const;
   void broadcast(std::vector<long long>& values) const;
@@ -52,12 +52,12 @@ class Comm
   int size_ = 1;
 };
 
-/// Runs `work` on rank 0 only; a Failure there is thrown on every rank with the same line.
-/// Collective.
+/// Runs `work` on rank 0 only. If it throws, every rank throws a Failure with the same exit code
+/// and line. Collective.
 void on_root(const Comm& comm, const std::function<void()>& work);
 
-/// Runs `work` on every rank; a Failure on any of them is thrown on all, with the line of the
-/// lowest one. Collective; the work itself must not be.
+/// Runs `work` on every rank. If it throws on some ranks, every rank throws the Failure of the
+/// lowest of these ranks. Collective, but `work` itself must not be collective.
 void on_all(const Comm& comm, const std::function<void()>& work);
 
 }  // namespace trocar::base

@@ -18,7 +18,7 @@ core::Failure failure(const std::string& doing, const std::string& path, int rea
   return core::output_error("cannot " + doing + " " + path + ": " + std::strerror(reason));
 }
 
-/// Access rights that a new file has by the user's mask.
+/// Access rights of a new file under the umask of the user.
 mode_t usual_mode()
 {
   const mode_t mask = ::umask(0);
@@ -103,7 +103,7 @@ void replace_file(const std::string& path, std::string_view bytes)
   const auto slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
   std::string temporary = (slash == std::string::npos ? "" : folder) + temporary_prefix + "XXXXXX";
-  const int number = ::mkstemp(temporary.data());  // makes it: O_EXCL
+  const int number = ::mkstemp(temporary.data());  // creates the file, with O_EXCL
   if (number < 0) throw failure("write", path);
   ::close(number);
   try {

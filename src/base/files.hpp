@@ -7,13 +7,13 @@
 
 namespace trocar::base {
 
-/// An open file descriptor of one's own. Every failing call is a Failure (74) that names the file
-/// and says why. For one rank alone.
+/// Owns an open file descriptor. Every call that fails throws Failure (74) with the name of the
+/// file and the reason. Not collective.
 class Descriptor
 {
  public:
   Descriptor() = default;
-  /// `flags` as open(2) has them; links are never followed.
+  /// `flags`: those of open(2). A symbolic link at `path` is never followed.
   Descriptor(const std::string& path, int flags);
   Descriptor(Descriptor&& other) noexcept
       : path_(std::move(other.path_)), number_(std::exchange(other.number_, -1))
@@ -36,11 +36,12 @@ class Descriptor
   int number_ = -1;
 };
 
-/// Puts a file in place whole or not at all: into a temporary file of a name of its own, synced and
-/// renamed. What was there is replaced, never written through. Throws Failure (74).
+/// Writes a file completely or not at all: writes a temporary file with a unique name, syncs it and
+/// renames it to `path`. An old file or link at `path` is replaced, never written through. Throws
+/// Failure (74).
 void replace_file(const std::string& path, std::string_view bytes);
 
-/// What the names of these temporary files begin with; a run that is killed may leave one.
+/// Prefix of the names of the temporary files of `replace_file`. A killed run may leave one behind.
 inline constexpr const char* temporary_prefix = ".trocar-";
 
 /// fsync of a file or folder by name. Throws Failure (74).

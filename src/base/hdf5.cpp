@@ -12,7 +12,7 @@
 namespace trocar::base {
 namespace {
 
-/// In memory alone, growing by this [B].
+/// HDF5 enlarges a file in memory by this much at a time [B].
 constexpr std::size_t growth = std::size_t{1} << 16;
 
 H5Id in_memory()
@@ -24,7 +24,7 @@ H5Id in_memory()
   return access;
 }
 
-/// Files in memory are told apart by their names.
+/// A unique name, because HDF5 identifies open files in memory by their names.
 std::string name_of_its_own(const std::string& path)
 {
   static long long made = 0;

@@ -26,25 +26,26 @@ class H5Id
   Close close_ = nullptr;
 };
 
-/// Where the bytes of a growing dataset are in the file: rows can be added without the library, in
-/// an order that leaves the file readable whatever happens in between.
+/// Byte offsets of a growing dataset in its file, for appending rows without the HDF5 library. The
+/// values are written first and the number of rows last, so that an interruption leaves a readable
+/// file.
 struct SeriesPlace
 {
-  std::uint64_t data = 0;   ///< first value, rows one behind the other [B]
-  std::uint64_t rows = 0;   ///< number of rows, 64 bits, in the dataset's header [B]
+  std::uint64_t data = 0;   ///< offset of the first value; rows are contiguous [B]
+  std::uint64_t rows = 0;   ///< offset of the number of rows (64 bits) in the dataset's header [B]
   std::size_t columns = 1;  ///< values in a row
 };
 
-/// One HDF5 file in memory, used from one rank: nothing is on disk before its bytes are written
-/// there, so that no disk can fail the library. Every failing call is a Failure (74) naming the
-/// file; who reads makes one of its own of it. Paths are absolute inside the file; missing groups
-/// are made on the way.
+/// An HDF5 file in memory, used on one rank. Only the caller writes its bytes to the disk, so a
+/// failing disk never interrupts the HDF5 library. Every call that fails throws Failure (74) with
+/// the name of the file. Callers that read an input file catch it and throw Failure (65).
+/// Paths are absolute inside the file, and missing groups on a path are created.
 class H5File
 {
  public:
-  /// An empty file; `path` is what messages call it.
+  /// An empty file. `path`: its name in messages.
   static H5File create(const std::string& path);
-  /// The file with these bytes.
+  /// The file with this content. `path`: its name in messages.
   static H5File of_bytes(const std::string& path, std::string bytes);
   ~H5File() = default;
   H5File(H5File&&) noexcept = default;
@@ -61,24 +62,26 @@ class H5File
   void attribute(const std::string& path, const std::string& name, const std::string& value);
   void attribute(const std::string& path, const std::string& name, std::int64_t value);
 
-  /// Makes a dataset of shape (1) or (1, columns) with room for so many rows, all in one chunk.
+  /// Makes a growing dataset of shape (1) when columns is 0, else (1, columns). Its first chunk has
+  /// room for `room` rows.
   void create_series(const std::string& path, std::size_t columns, std::size_t room,
                      const std::string& units);
-  /// `bytes`: those of this file.
+  /// Byte offsets of a dataset from `create_series`. `bytes`: the result of `bytes()`. Throws
+  /// Failure (1) when the file has object headers of another format than expected.
   SeriesPlace series_place(const std::string& path, std::size_t columns,
                            const std::string& bytes) const;
-  /// Where the value of a 64-bit attribute is [B].
+  /// Offset of the value of a 64-bit attribute [B]. Arguments and Failure as in `series_place`.
   std::uint64_t attribute_place(const std::string& path, const std::string& name,
                                 const std::string& bytes) const;
 
   void make_group(const std::string& path);
   /// Makes `path` a soft link to `target`, which need not exist yet.
   void link(const std::string& target, const std::string& path);
-  /// Takes an object out of the file.
+  /// Removes an object from the file.
   void remove(const std::string& path);
-  /// Copies an object with all below it from another file, and its attributes.
+  /// Copies an object from another file, with its attributes and everything below it.
   void copy(const H5File& from, const std::string& path);
-  /// Names of what is at the top.
+  /// Names of the objects in the root group.
   std::vector<std::string> top() const;
 
   bool has(const std::string& path) const;
@@ -104,7 +107,8 @@ class H5File
   H5Id file_;
 };
 
-/// The value must be finite: a NaN must never reach a result file. Throws Failure (70).
+/// Throws Failure (70) when a value is not finite: no NaN may reach a result file. `where`: name of
+/// the values in the message.
 void refuse_nan(const std::vector<double>& values, const std::string& where);
 
 }  // namespace trocar::base

@@ -6,12 +6,13 @@
 #include "base/hdf5.hpp"
 #include "core/failure.hpp"
 
-// Where in the bytes of a file some values are.
+// Finds the byte offsets of values in a file from its object headers.
 namespace trocar::base {
 namespace {
 
-/// Messages of the object headers that a file of this library's earliest format has: see "IV.A.1.a
-/// Version 1 Data Object Header Prefix" of the HDF5 file format specification.
+/// The messages in an object header of version 1, the earliest format, which the HDF5 library
+/// writes by default. See "IV.A.1.a Version 1 Data Object Header Prefix" in the HDF5 file format
+/// specification.
 class HeaderMessages
 {
  public:
@@ -24,7 +25,7 @@ class HeaderMessages
   struct Message
   {
     unsigned type;
-    std::uint64_t begin;  ///< of its content in the file
+    std::uint64_t begin;  ///< offset of the message's content in the file [B]
   };
   const std::vector<Message>& all() const { return messages_; }
 
@@ -46,7 +47,7 @@ class HeaderMessages
   void add_block(std::uint64_t at, std::uint64_t size)
   {
     constexpr unsigned continuation = 0x10;
-    constexpr std::size_t most = 10000;  // a damaged file may lead round and round
+    constexpr std::size_t most = 10000;  // limit for a damaged file with a cycle of blocks
     for (const std::uint64_t end = at + size; at + 8 <= end;) {
       if (messages_.size() > most) throw unknown();
       const unsigned type = number<std::uint16_t>(at);
@@ -84,7 +85,8 @@ SeriesPlace H5File::series_place(const std::string& path, std::size_t columns,
   check(H5Oget_info2(set.get(), &header, H5O_INFO_BASIC), path);
   const HeaderMessages messages(bytes, header.addr);
   for (const HeaderMessages::Message& one : messages.all())
-    if (one.type == dataspace && bytes.at(one.begin) == 1)  // version, rank, flags, 5 unused, sizes
+    // content: version, rank and flags (1 byte each), 5 unused bytes, then the sizes
+    if (one.type == dataspace && bytes.at(one.begin) == 1)
       return {data, one.begin + 8, std::max<std::size_t>(columns, 1)};
   throw HeaderMessages::unknown();
 }
@@ -99,7 +101,8 @@ std::uint64_t H5File::attribute_place(const std::string& path, const std::string
   const HeaderMessages messages(bytes, header.addr);
   for (const HeaderMessages::Message& one : messages.all()) {
     if (one.type != attribute || bytes.at(one.begin) != 1) continue;
-    // version, 1 unused, sizes of name, type and space, then these, padded, and the value
+    // Content: version (1 byte), 1 unused byte, the sizes of name, type and space (2 bytes each),
+    // then name, type and space, each padded to 8 bytes, then the value.
     const auto size = [&](std::uint64_t at) {
       return messages.number<std::uint16_t>(one.begin + at);
     };

@@ -3,7 +3,7 @@
 #include "base/hdf5.hpp"
 #include "core/failure.hpp"
 
-// What is read back of a file: by runs that go on.
+// Functions that read, for runs that resume an earlier run.
 namespace trocar::base {
 
 bool H5File::has(const std::string& path) const

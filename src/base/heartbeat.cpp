@@ -45,7 +45,7 @@ Heartbeat::~Heartbeat()
     ended_.notify_one();
     thread_.join();
   }
-  // A count of -1 says that this rank has gone in order.
+  // A count of -1 tells the other ranks that this rank ended normally.
   if (window_ != MPI_WIN_NULL) counts_[static_cast<std::size_t>(own_)]->store(-1);
   if (window_ != MPI_WIN_NULL) MPI_Win_free(&window_);
   if (machine_ != MPI_COMM_NULL) MPI_Comm_free(&machine_);
@@ -54,7 +54,7 @@ Heartbeat::~Heartbeat()
 void Heartbeat::watch()
 {
   std::vector<long> seen(counts_.size(), 0);
-  std::vector<int> silent(counts_.size(), 0);  // own seconds without a new count
+  std::vector<int> silent(counts_.size(), 0);  // seconds without a new count, by rank
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, std::chrono::seconds(1), [this] { return over_; })) {
     counts_[static_cast<std::size_t>(own_)]->fetch_add(1);

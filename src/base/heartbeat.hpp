@@ -11,19 +11,19 @@
 
 namespace trocar::base {
 
-/// Notices that another rank of this machine no longer runs at all: stopped, or stuck in the
-/// kernel. MPI would wait for it for ever. Every rank has a thread that counts in shared memory,
-/// once a second, and looks at the others' counts; a rank that computes goes on counting. A job
-/// that is stopped as a whole and goes on later is none the worse: time that a rank does not see
-/// itself does not count. Ranks on other machines are looked after there.
+/// Detects another rank on the same machine that no longer runs, because it was stopped or hangs in
+/// the kernel. MPI would wait for such a rank for ever. Every rank has a thread that increments a
+/// count in shared memory once a second and reads the counts of the other ranks. A rank that
+/// computes keeps counting. A rank measures the silence of others only while its own thread runs,
+/// so a job that is stopped as a whole may continue later. Each machine checks its own ranks.
 class Heartbeat
 {
  public:
-  /// Called with the rank that is silent; it must not return. One of the ranks that call it is to
-  /// speak.
+  /// Called with the silent rank on every rank that notices the silence; must not return. `speaks`
+  /// is true on one of these ranks, which prints the message.
   using Silent = std::function<void(int rank, bool speaks)>;
 
-  /// `silent` is called from that thread when a rank has not counted for so many seconds.
+  /// Starts the thread. It calls `silent` when another rank has not counted for `seconds`.
   /// Collective.
   Heartbeat(MPI_Comm comm, int seconds, Silent silent);
   /// Collective.
@@ -36,10 +36,10 @@ class Heartbeat
 
   int seconds_;
   Silent silent_;
-  MPI_Comm machine_ = MPI_COMM_NULL;  ///< ranks of this machine
+  MPI_Comm machine_ = MPI_COMM_NULL;  ///< the ranks on this machine
   MPI_Win window_ = MPI_WIN_NULL;
-  std::vector<int> rank_;                   ///< of each of them in the whole
-  std::vector<std::atomic<long>*> counts_;  ///< by each of them
+  std::vector<int> rank_;  ///< rank in the constructor's `comm`, by rank on this machine
+  std::vector<std::atomic<long>*> counts_;  ///< counts in shared memory, by rank on this machine
   int own_ = 0;
   bool over_ = false;
   std::mutex mutex_;

@@ -9,7 +9,7 @@
 namespace trocar::base {
 namespace {
 
-/// The innermost message of the PETSc error being reported, filled by our error handler.
+/// Message of the last PETSc error at its origin, stored by `remember_message`.
 std::string& last_petsc_message()
 {
   static std::string message;

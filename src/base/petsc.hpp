@@ -11,7 +11,7 @@
 
 namespace trocar::base {
 
-/// Turns a PETSc error code into a Failure (70) that carries PETSc's own words.
+/// Turns a PETSc error code into a Failure (70) with PETSc's own message.
 void check_petsc(PetscErrorCode code, const char* call);
 
 /// Turns an MPI error code into a Failure (1).
@@ -40,7 +40,7 @@ class Handle
   ~Handle() { reset(); }
 
   Object get() const noexcept { return object_; }
-  /// Where a create call writes; what was owned before is destroyed first.
+  /// Address for a PETSc create call to write to. An object owned before is destroyed first.
   Object* out()
   {
     reset();
@@ -51,11 +51,11 @@ class Handle
  private:
   void reset() noexcept
   {
-    // After PetscFinalize nothing may be destroyed any more. While an exception is on its way out
-    // nothing may be either: some destroys are collective, and the failure may be this rank's only.
+    // After PetscFinalize no object may be destroyed. During an exception none may be destroyed
+    // either: some destroys are collective, and perhaps only this rank has failed.
     PetscBool finalized = PETSC_FALSE;
     if (object_ && PetscFinalized(&finalized) == 0 && !finalized && !std::uncaught_exceptions())
-      static_cast<void>(Destroy(&object_));  // a failing destroy has no one to tell
+      static_cast<void>(Destroy(&object_));  // a destructor cannot report an error
     object_ = nullptr;
   }
   Object object_ = nullptr;
@@ -66,10 +66,10 @@ using MatHandle = Handle<Mat, MatDestroy>;
 using KspHandle = Handle<KSP, KSPDestroy>;
 using NullSpaceHandle = Handle<MatNullSpace, MatNullSpaceDestroy>;
 
-/// The PETSc session: initialised in the constructor, finalised in the destructor (unless an
-/// exception is on its way out: finalising is collective). PETSc's error printing is replaced by
-/// `check_petsc`. PETSc's database holds the arguments given here and nothing else: PETSC_OPTIONS
-/// and files named petscrc are not looked at.
+/// The PETSc session. The constructor initialises PETSc. The destructor finalises PETSc, but not
+/// during an exception, because finalising is collective. `check_petsc` replaces PETSc's printing
+/// of errors. The options database holds only `arguments`: PETSC_OPTIONS and petscrc files are
+/// ignored.
 class PetscSession
 {
  public:

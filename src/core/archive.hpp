@@ -5,8 +5,9 @@
 
 namespace trocar::core {
 
-/// A state as lists of numbers, the same whatever the number of ranks: what a state says of itself,
-/// leaf by leaf in the order in which it says it. Lists of nodes and tets are in file order.
+/// A state as lists of numbers, independent of the number of ranks. The entries are the leaves of
+/// the state in the order of its `visit` functions (core/visit.hpp). Values of nodes and tets are
+/// in the order of the mesh file.
 struct Archive
 {
   struct Field
@@ -17,10 +18,11 @@ struct Archive
     bool operator==(const Field&) const = default;
   };
 
-  std::vector<std::string> names;  ///< of the leaves, "NAME [UNIT]"; lists tell their size first
-  std::vector<long long> whole;    ///< integers, flags, sizes of lists, whether parts are there
-  std::vector<double> real;        ///< what ranks do not share
-  std::vector<Field> fields;       ///< what they share
+  /// "NAME [UNIT]" of every leaf, and "NAME" of every list or optional part before its leaves.
+  std::vector<std::string> names;
+  std::vector<long long> whole;  ///< integers, flags, sizes of lists, presence of optional parts
+  std::vector<double> real;      ///< reals that every rank holds
+  std::vector<Field> fields;     ///< reals of nodes or tets, which are distributed over the ranks
 
   bool operator==(const Archive&) const = default;
 };

@@ -8,8 +8,8 @@
 
 namespace trocar::core {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): tells files apart and notices damage, not malice. A single
-/// wrong byte always changes it.
+/// FNV-1a hash of 64 bits (Fowler, Noll, Vo). It distinguishes files and detects accidental damage,
+/// but not a deliberate change. A single wrong byte always changes the hash.
 struct Fnv1a
 {
   std::uint64_t value = 14695981039346656037ULL;

@@ -9,7 +9,7 @@
 namespace trocar::post {
 namespace {
 
-/// s : C⁻¹ : t of two stresses xx, yy, zz, xy, yz, xz [J/m³].
+/// s : C⁻¹ : t of two stresses with components xx, yy, zz, xy, yz, xz [J/m³].
 double complementary(const tissue::Material& m, const Voigt& s, const Voigt& t)
 {
   const double product = s.head<3>().dot(t.head<3>()) + 2.0 * s.tail<3>().dot(t.tail<3>());
@@ -17,7 +17,8 @@ double complementary(const tissue::Material& m, const Voigt& s, const Voigt& t)
          m.young;
 }
 
-/// ∫ |Σ N_a d_a|² of nodal differences d_a, in the norm above.
+/// ∫ d : C⁻¹ : d dV over a tet [J] of the stress difference d = Σ N_a d_a with nodal values d_a.
+/// Exact for straight tets.
 template <int N>
 double integral(const tissue::Material& m, const NodalStress& d, double volume)
 {
@@ -52,7 +53,7 @@ VecX recovery_errors(const mesh::Mesh& mesh, const std::vector<tissue::Material>
 VecX wanted_sizes(const mesh::Mesh& mesh, const VecX& errors, double energy, double target)
 {
   constexpr double finest = 0.25, coarsest = 2.0;
-  constexpr double edge_over_size = 1.2;  // of Gmsh's meshes: mean edge over the size asked for
+  constexpr double edge_over_size = 1.2;  // mean edge of Gmsh's mesh over the requested size
   const double p = mesh.quadratic() ? 2.0 : 1.0, d = 3.0;
   double sum = 0.0;
   for (double square : errors) sum += std::pow(square, d / (2.0 * p + d));
@@ -68,8 +69,8 @@ VecX wanted_sizes(const mesh::Mesh& mesh, const VecX& errors, double energy, dou
     }
   }
   VecX size = (logs.array() / weight.array()).exp();
-  // Means at the nodes lose part of the contrast, and with it the target: all are made smaller by
-  // what the error they lead to is off.
+  // Averaging at the nodes loses part of the contrast between sizes, so the error misses the
+  // target. All sizes are scaled until the error predicted from them is the target.
   double predicted = 0.0;
   for (int t = 0; t < mesh.tet_count(); ++t) {
     double here = 0.0;

@@ -8,7 +8,7 @@ namespace trocar::post {
 
 namespace {
 
-/// dV/dp [m³/Pa] of every cavity's wall, the others left empty. Collective.
+/// dV/dp [m³/Pa] of every cavity's wall, with no pressure in the other cavities. Collective.
 std::vector<double> wall_compliances(const mesh::Mesh& mesh, tissue::TissueSettings settings,
                                      const std::vector<cavity::CavitySettings>& cavities,
                                      const base::Comm& comm)

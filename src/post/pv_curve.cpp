@@ -27,7 +27,8 @@ double undeformed_volume(const Model& model, int cavity)
   return model.cavities->wall(cavity).volume();
 }
 
-/// Takes the state to a volume, in halves of the way when it is not reached at once.
+/// Equilibrium at the volume ratio `ratio`, from a state at the ratio `before`. A change of volume
+/// that fails is retried as two halves, and so is each half. Throws Failure (70) after 8 halvings.
 step::Outcome<step::Accepted> at_ratio(Model& model, int cavity, State from, double before,
                                        double ratio, int halvings)
 {
@@ -45,8 +46,8 @@ step::Outcome<step::Accepted> at_ratio(Model& model, int cavity, State from, dou
   return at_ratio(model, cavity, std::move(half->state), middle, ratio, halvings + 1);
 }
 
-/// Least squares of p over hat functions between equally spaced ratios: straight pieces that hang
-/// together. One piece is a straight line.
+/// Least-squares fit of p by a continuous function of the ratio with straight pieces of equal
+/// width. Returns its values at the points [Pa]. One piece is a straight line.
 VecX straight_pieces(const std::vector<Point>& points, int pieces)
 {
   const auto count = static_cast<Eigen::Index>(points.size());

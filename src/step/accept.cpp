@@ -10,8 +10,8 @@
 namespace trocar::step {
 namespace {
 
-// Where the energy of a step went. Rows do work λ·δ only in slip: the rest of it passes from needle
-// to tissue and is in neither account.
+// Energy account at the end of a step [J]. A row dissipates -λ·δ where it slips. All other work of
+// a row passes from the needle to the tissue and cancels in the account.
 EnergyAccount account(const Model& model, const State& old, const Scheme& scheme, Newton& newton)
 {
   const core::TimeStep& now = scheme.now();
@@ -23,7 +23,7 @@ EnergyAccount account(const Model& model, const State& old, const Scheme& scheme
   energy.elastic = tissue.elastic;
   energy.kinetic = tissue.kinetic;
   energy.supplied += tissue.supplied;
-  if (model.cavities)  // by the pressures of the fluids
+  if (model.cavities)  // work of the fluids' pressures
     energy.supplied += model.space.dot(model.cavities->forces(next.cavities, newton.walls(), now),
                                        {next.tissue.u.value - old.tissue.u.value});
   energy.damping += tissue.damped;
@@ -40,7 +40,7 @@ EnergyAccount account(const Model& model, const State& old, const Scheme& scheme
     energy.friction -= done.coupling.friction_work;
     energy.cutting -= done.coupling.cutting_work;
   }
-  // The start has no history: what it stores is where the account begins.
+  // At the start all sums are zero, and the stored energy is kept as `stored_at_start`.
   if (now.start) {
     const double stored = energy.elastic + energy.kinetic;
     energy = {energy.elastic, energy.kinetic, stored, 0.0, 0.0, 0.0, 0.0};
@@ -63,7 +63,7 @@ void accept_needles(const Model& model, Newton& newton)
 {
   const Solution& solution = newton.solution();
   State& next = newton.state();
-  std::optional<fem::GlobalField> u;  // gathered only when a tip does something
+  std::optional<fem::GlobalField> u;  // gathered only when some tip does not hold
   for (std::size_t i = 0; i < model.needles.size(); ++i) {
     NeedleReport& needle = newton.report().needles[i];
     const needle::Shaft& shaft = next.needles[i].shaft;

@@ -5,8 +5,9 @@
 
 namespace trocar::step {
 
-/// Ends a step that is balanced: what happened is booked into the state, and told. Refused when
-/// such a state must not be. Collective.
+/// Ends a balanced step: updates multipliers, tips, fluids and energies in the state, and completes
+/// the report. Moves both out of `newton`. Refused for the reasons of `cannot_stand` and
+/// `collapsed` (refusals.hpp). Collective.
 Outcome<Accepted> accept(const Model& model, const State& old, const Scheme& scheme,
                          Newton& newton);
 

@@ -18,7 +18,7 @@ struct is_by_point<fem::ByPoint<List>> : std::true_type
 {
 };
 
-/// Numbers that one value of a list consists of.
+/// Numbers in one value of a list: 1 for a scalar, all entries for an Eigen vector or matrix.
 template <class Value>
 constexpr std::size_t width()
 {
@@ -31,7 +31,7 @@ constexpr std::size_t width()
 template <class List>
 using ValueOf = std::remove_cvref_t<decltype(std::declval<List&>()[0])>;
 
-/// The numbers of a list as they lie in memory.
+/// View of the numbers of a list in memory. Borrows the list.
 template <class List>
 std::span<const double> numbers_of(const List& list)
 {
@@ -40,7 +40,7 @@ std::span<const double> numbers_of(const List& list)
   return {reinterpret_cast<const double*>(list.data()), size * width<ValueOf<List>>()};
 }
 
-/// Takes a state apart.
+/// Leaf visitor of core::Walk that writes the leaves of a state into an archive.
 class Writer
 {
  public:
@@ -95,7 +95,8 @@ class Writer
   core::Archive archive_;
 };
 
-/// Puts one together, and believes nothing.
+/// Leaf visitor of core::Walk that reads the leaves of a state from an archive. The archive may be
+/// damaged or from another version, so names and sizes are checked. Throws Failure (65).
 class Reader
 {
  public:
@@ -136,7 +137,7 @@ class Reader
     expect(name);
     if (size() > 0) part.emplace();
   }
-  /// Nothing may be left over.
+  /// Throws Failure (65) when the archive has entries that were not read.
   void finish() const
   {
     if (name_ != archive_->names.size() || whole_ != archive_->whole.size() ||
@@ -166,7 +167,8 @@ class Reader
     else
       x = static_cast<T>(next(archive_->whole, whole_));
   }
-  /// Of a list that follows; no list is longer than all there is.
+  /// Size of the next list, or 1 or 0 for an optional part. A size above the number of all entries
+  /// of the archive is damage: throws Failure (65) before memory is allocated for it.
   std::size_t size()
   {
     const long long asked = next(archive_->whole, whole_);
@@ -188,7 +190,7 @@ class Reader
       x.resize(size);
     }
   }
-  /// Of `size` numbers; 0: of as many as it has.
+  /// Values of the next field, which must have this name and `size` numbers; size 0: any number.
   const std::vector<double>& field(const std::string& name, std::size_t size)
   {
     const core::Archive::Field& found = next(archive_->fields, field_);
@@ -212,7 +214,8 @@ class Reader
   std::size_t name_ = 0, whole_ = 0, real_ = 0, field_ = 0;
 };
 
-/// Indices into mesh and lists, which whatever reads a state believes.
+/// Throws Failure (65) when an index into the mesh or a list is out of range, or when lists that
+/// belong together differ in length. Users of a state do not check this.
 void refuse_indices_of_nothing(const State& state, const fem::Space& space)
 {
   const auto among = [](int index, int lowest, std::size_t count) {

@@ -5,11 +5,12 @@
 
 namespace trocar::step {
 
-/// Complete on rank 0; of fields nothing elsewhere. Collective.
+/// The state as an archive. It is complete on rank 0; on other ranks the fields by tet are empty.
+/// Collective.
 core::Archive archived(const State& state, const fem::Space& space);
 
-/// The state again, on any number of ranks; `archive` is rank 0's. Failure (65) where it is not
-/// that of such a state. Collective.
+/// The state that `archive` describes, on any number of ranks. Only the archive of rank 0 counts.
+/// Throws Failure (65) when it does not describe a state on this mesh. Collective.
 State restored(core::Archive archive, const fem::Space& space);
 
 }  // namespace trocar::step

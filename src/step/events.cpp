@@ -28,7 +28,7 @@ std::optional<core::Refusal> move_needles(const Model& model, const State& old,
   return std::nullopt;
 }
 
-/// Stretches of the needles' paths that lie in no tissue, by needle.
+/// For each needle, the stretches of its path behind the tip that lie in no tissue.
 std::vector<std::vector<cavity::VoidPiece>> voids_of(const State& state)
 {
   std::vector<std::vector<cavity::VoidPiece>> voids(state.needles.size());

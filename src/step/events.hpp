@@ -4,10 +4,11 @@
 
 namespace trocar::step {
 
-/// Where a step starts to iterate from: needles with their bases at its end, paths grown and points
-/// born as their tips went through tissue where the old state has it, what they have opened of
-/// cavities, and amounts of fluid. Decided before the solve and frozen during it. Refused where a
-/// shaft enters the tissue beside its channel. Collective.
+/// First iterate of a step, with the events of the step. Events are decided before the solve and do
+/// not change during the solve. Every needle moves with its base to the end of the step. Its tip
+/// goes through the tissue in the shape of the old state: the path grows, and coupling points are
+/// born. Needles open conduits, and curves inject fluid. Refused when a shaft enters the tissue
+/// beside its channel. Collective.
 core::Outcome<State> predict(const Model& model, const State& old, const Scheme& scheme);
 
 }  // namespace trocar::step

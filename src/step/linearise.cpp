@@ -8,14 +8,15 @@
 #include "step/newton.hpp"
 #include "step/refusals.hpp"
 
-// 2 to 5 of the step: each body alone, the rows, the dense problem, the correction.
+// Parts 2 to 5 of a step: the free motion of every body (2), the rows (3), the dense problem (4)
+// and the correction of the bodies (5). Part 1 is in events.cpp.
 namespace trocar::step {
 
 core::Outcome<core::Done> Newton::linearise()
 {
   tissue::Tissue& tissue = model_->tissue;
   u_before_ = next_.tissue.u;
-  std::optional<std::pair<State, cavity::Shape>> from;  // to begin again with the other tangent
+  std::optional<std::pair<State, cavity::Shape>> from;  // for a retry with the rotated tangent
   if (tissue.tangent().exact()) from.emplace(next_, walls_);
   for (;;) {
     auto solution = solve::attempted([&] { return solve_once(); });
@@ -23,7 +24,9 @@ core::Outcome<core::Done> Newton::linearise()
       solution_ = std::move(*solution);
       break;
     }
-    // As a tangent without factor: a smaller step, or the other tangent, may do.
+    // An exact tangent that fails may be indefinite. An automatic choice then takes the rotated
+    // tangent, otherwise the step is refused, as a smaller step may succeed. With any other tangent
+    // a linear system that is not solved ends the run.
     const core::Refusal& refusal = solution.refusal();
     const bool exact = tissue.tangent().exact();
     if (tissue.tangent().drop_exact()) {
@@ -52,12 +55,13 @@ core::Outcome<Solution> Newton::solve_once()
   fem::Load load;
   if (model_->cavities) load = model_->cavities->load(next_.cavities, walls_, now);
   auto at = model_->tissue.linearise(scheme_->past().tissue, next_.tissue.u, now, load,
-                                     report_.linearisations > 0);  // 2 each body alone
+                                     report_.linearisations > 0);  // part 2: the tissue
   if (!at) return at.refusal();
-  // Directions frozen at the start of the step, as in the paper, or brought up to date within it.
+  // With direction_max 1 the rows keep the directions of the iterate, as in the paper. With more,
+  // the rows are made again at every solution until their gaps are closed, or `most` is reached.
   const int most = model_->scene.time.direction_max;
   for (int turn = 1;; ++turn) {
-    at->iterate = next_.tissue.u;  // where the gaps are measured from
+    at->iterate = next_.tissue.u;  // displacement at which the gaps are evaluated
     auto solution = solve_rows(*at);
     if (!solution) return solution.refusal();
     walls_ = model_->walls(next_.tissue.u);
@@ -68,7 +72,7 @@ core::Outcome<Solution> Newton::solve_once()
   }
 }
 
-/// 3: the rows where the state so far has them, and the bodies they hold.
+/// Part 3: makes the rows at the present iterate. Also does part 2 for the needles.
 void Newton::collect_rows(Solution& solution)
 {
   const core::TimeStep& now = scheme_->now();
@@ -96,8 +100,8 @@ core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
       return cavity::refresh(*model_->cavities, lambda, solution.of_cavities, set);
     };
   solution.system.place = [&](int row) { return place_of(model_->scene, solution, row); };
-  auto saddle = meet_laws(at, solution.system);  // 4
-  solution.system.relinearise = nullptr;         // they look at this very solution
+  auto saddle = meet_laws(at, solution.system);  // part 4: the dense problem
+  solution.system.relinearise = nullptr;         // both functions capture local variables
   solution.system.place = nullptr;
   if (!saddle) return saddle.refusal();
   solution.saddle = std::move(*saddle);
@@ -106,7 +110,8 @@ core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
   return solution;
 }
 
-/// 4: the dense problem, and where it leads the tissue.
+/// Part 4: solves the dense problem for the multipliers, and the tissue for its displacement under
+/// these multipliers. With frozen cavities the search for their pressures does both.
 core::Outcome<constraint::Saddle> Newton::meet_laws(solve::Linearisation& at,
                                                     constraint::System& system)
 {
@@ -124,7 +129,7 @@ core::Outcome<constraint::Saddle> Newton::meet_laws(solve::Linearisation& at,
   return saddle;
 }
 
-/// 5: every body goes where the multipliers lead it.
+/// Part 5: moves tissue and needles to the solution, and sets velocities and pressures.
 void Newton::correct(Solution& solution)
 {
   const core::TimeStep& now = scheme_->now();
@@ -144,10 +149,11 @@ void Newton::correct(Solution& solution)
   }
 }
 
-/// Of a step that is iterated anyway, a linearisation need only lead on: beside forces of rows,
-/// well beyond what the last one left, or one sweep with an older factor would pass for it again
-/// and again and lead nowhere. Under pressures that follow it does so by the square of that, so
-/// that Newton's rate is kept.
+/// Relative residual to which one linearisation is solved. 1e-4 is enough in a step that is
+/// iterated. With rows it is a tenth of the residual that the last linearisation left, if that is
+/// smaller. Under a looser tolerance one sweep with an older factor would be accepted again and
+/// again without progress. With loads that follow the tissue it is the square of the last residual,
+/// which keeps Newton's rate.
 double Newton::lag_tolerance(bool rows) const
 {
   constexpr double least = 1e-10, part = 0.1;

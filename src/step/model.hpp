@@ -9,8 +9,8 @@
 
 namespace trocar::step {
 
-/// What steps are taken with: the bodies of a scene, and caches that no result depends on beyond
-/// their tolerances. All that changes is in `State`.
+/// The bodies of a scene and their caches. Results depend on the caches only within the tolerances
+/// of the solvers. Everything that changes from step to step is in `State`.
 struct Model
 {
   /// Borrows the scene. Collective.
@@ -18,13 +18,13 @@ struct Model
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  bool beams() const;          ///< some needle bends
-  bool follows() const;        ///< some pressure follows its wall
-  bool exact_volumes() const;  ///< some volume is that of the deformed wall
-  /// Walls where the state has them: looked at once for every place of the tissue, and only when
-  /// some load or volume is theirs. Collective.
+  bool beams() const;          ///< some needle is a flexible beam
+  bool follows() const;        ///< some pressure acts on the deformed wall
+  bool exact_volumes() const;  ///< some cavity's volume is that of its deformed wall
+  /// The cavity walls at displacement u; empty when no volume is that of a deformed wall. Callers
+  /// keep the result, so that it is computed once per displacement. Collective.
   cavity::Shape walls(const fem::OwnedField& u) const;
-  /// Forgets all that was made for earlier steps. Not collective.
+  /// Forgets operators, factors and pressure responses of earlier steps. Not collective.
   void drop_caches();
 
   const Scene& scene;
@@ -32,11 +32,11 @@ struct Model
   fem::Space space;
   tissue::Tissue tissue;
   std::vector<needle::Needle> needles{};
-  bool driven_at_start = false;  ///< motion that rows or supports prescribe from the start on
-  std::optional<mesh::Locator> locator{};                   ///< only with needles
+  bool driven_at_start = false;            ///< rows or supports prescribe motion from the start on
+  std::optional<mesh::Locator> locator{};  ///< only with needles
   std::optional<insertion::Ground> ground{};                ///< only with needles
   std::optional<cavity::Cavities> cavities{};               ///< only with cavities
-  std::optional<cavity::PressureSearch> pressure_search{};  ///< likewise
+  std::optional<cavity::PressureSearch> pressure_search{};  ///< only with cavities
 };
 
 }  // namespace trocar::step

@@ -6,7 +6,7 @@
 #include "core/words.hpp"
 #include "step/refusals.hpp"
 
-// Decides when the Newton iteration of a step ends, and how it goes on until then.
+// Stopping rule and line search of Newton's iteration. linearise.cpp has the linearisation.
 namespace trocar::step {
 
 Newton::Newton(Model& model, const Scheme& scheme, State first)
@@ -20,7 +20,8 @@ Newton::Newton(Model& model, const Scheme& scheme, State first)
 }
 
 /// Static equilibria and steps with pressures that follow the walls are iterated until everything
-/// is balanced. A dynamic one is as many times as it was told to, or as it takes.
+/// is balanced. Any other dynamic step takes at most `newton_max` linearisations; with 0 it takes
+/// as many as it needs, at most 50.
 Newton::Effort Newton::effort_of(const Model& model, const core::TimeStep& now)
 {
   constexpr int most = 50;
@@ -30,14 +31,16 @@ Newton::Effort Newton::effort_of(const Model& model, const core::TimeStep& now)
   if (now.is_static || model.follows()) return {most, 0.0, tolerance, true};
   const int told = model.scene.time.newton_max;
   if (told > 1) return {told, 0.0, tolerance, true};
-  const double any = std::numeric_limits<double>::max();  // but what is not finite
+  const double any = std::numeric_limits<double>::max();  // accepts any finite residual
   if (told == 1 || !(bends || model.beams())) return {1, any, any, bends};
-  // Linear tissue is balanced by one solve; beams beside it bend, and their rows turn.
+  // When all tissue is linear, one solve balances it, and its balance is not measured. Beams beside
+  // it need more solves, because they bend and their rows turn.
   return {most, automatic_first, automatic, bends};
 }
 
-/// Of the needles that λ leaves to be made, see Needle::relative_increment: against a needle's
-/// axial stiffness, forces that bend it are below round-off.
+/// Largest increment that the needles would make in another linearisation with the same λ, see
+/// Needle::relative_increment. Needles are not judged by their residual: rounding errors of the
+/// axial force hide the forces that bend a needle.
 double Newton::largest_increment() const
 {
   double largest = 0.0;
@@ -67,7 +70,7 @@ bool Newton::balanced()
   if (inverted_ >= 0) return false;
   const core::TimeStep& now = scheme_->now();
   const tissue::Balance& balance = balance_;
-  std::optional<Rows> rows;  // here, made when they are asked for
+  std::optional<Rows> rows;  // at this iterate, made on first use
   const auto rows_here = [&]() -> const Rows& {
     if (!rows) rows = coupling_rows(*model_, now, next_);
     return *rows;
@@ -81,7 +84,8 @@ bool Newton::balanced()
   residual_ = std::max(balance.norm, increment);
   if (!(std::max(balance.worst, increment) <= effort_.later)) return false;
   if (automatic && !(across <= effort_.later)) return false;
-  // Sums over stiff parts are rounded: as long as it helps, the residual is refined.
+  // In statics the supports must carry the loads. Rounding in stiff parts may prevent this, so the
+  // iteration goes on only while each linearisation halves the sum that is not carried.
   if (now.is_static && !balance.carries(effort_.later) && balance.lost < 0.5 * lost_before_)
     return false;
   if (model_->exact_volumes() && !cavity::closed(*model_->cavities, next_.cavities, walls_, now))
@@ -107,18 +111,18 @@ core::Outcome<core::Done> Newton::lead_on()
   return core::Done{};
 }
 
-/// The tet whose inversion ends the iteration; -1: none.
+/// Tet (file order) whose inversion is not allowed; -1: none.
 int Newton::refused(const tissue::Folded& folded) const
 {
   if (folded.linear < 0 || model_->scene.tissue.allow_inversion) return folded.other;
   return folded.other < 0 ? folded.linear : std::min(folded.linear, folded.other);
 }
 
-// Half of the increment, a quarter, ...: the first on which no element is inside out and less is
-// unbalanced than before it. Forces of needles and cavities come in along the line, so that the
-// residual falls at first wherever the tangent is that of the forces; rows that begin to hold or
-// slip are no reason for it to fall, then the whole increment stays. False when even the shortest
-// turns elements inside out, or one increment after the other does.
+// Line search: takes the first of 1/2, 1/4, ... of the increment that inverts no element and has a
+// smaller residual than the start. Forces of needles and cavities are interpolated on the line, so
+// the residual falls at first wherever the tangent is that of the forces. It need not fall when
+// rows begin to hold or slip: then the whole increment stays, if it inverts no element. False when
+// even the shortest part inverts elements, or when more than four increments in a row did.
 bool Newton::shorten(double& rest)
 {
   constexpr int most_halvings = 4, most_inversions = 4;
@@ -132,7 +136,7 @@ bool Newton::shorten(double& rest)
     part *= 0.5;
     const fem::OwnedField u{u_before_.value + part * (whole.value - u_before_.value)};
     if (refused(model_->tissue.folded(u)) >= 0) continue;
-    const bool first = !std::isfinite(unbalanced_before_);  // nothing to compare with
+    const bool first = !std::isfinite(unbalanced_before_);  // no earlier residual
     fem::OwnedField along = all;
     if (!first) along.value = forces_before_.value + part * (all.value - forces_before_.value);
     const double here =

@@ -7,25 +7,27 @@
 
 namespace trocar::step {
 
-/// Newton's iteration of one step: linearise all bodies, solve, judge what is left, and go on along
-/// an increment that is no longer than it leads. One iteration is the papers' step.
+/// Newton's iteration for one step. An iteration linearises all bodies, solves with the rows,
+/// measures the residual, and shortens the increment when the residual has grown. The papers make
+/// one iteration per step.
 class Newton
 {
  public:
-  /// Borrows model and scheme. `first`: where it begins, with the events of the step.
+  /// Borrows model and scheme. `first`: the first iterate, from `predict`.
   Newton(Model& model, const Scheme& scheme, State first);
 
-  /// False when as many iterations as may be were in vain.
+  /// False when the largest number of linearisations has been reached.
   bool goes_on() const { return report_.linearisations < effort_.most; }
-  /// Linearises at the state so far, solves with the rows in their laws and moves there. Refused
-  /// when that cannot be. Collective.
+  /// Linearises at the iterate, solves with the rows in their laws and moves to the solution.
+  /// Refused when there is no solution. Throws core::Unsolved (70) when a linear solver misses its
+  /// tolerance without an exact tangent. Collective.
   core::Outcome<core::Done> linearise();
-  /// The state so far is taken: it is balanced well enough, no element is turned inside out and the
-  /// gaps are closed. Collective.
+  /// Measures the balance. True when the iterate is accepted: forces are balanced to the tolerance,
+  /// no element is inverted, and the gaps are closed. Collective.
   bool balanced();
-  /// Prepares the next iteration: shortens the increment where the residual grows or elements turn
-  /// inside out, and takes the exact tangent where the other leads on too slowly. Refused when an
-  /// element stays turned. Collective.
+  /// Prepares the next iteration. Shortens the increment when the residual grew or an element is
+  /// inverted, and switches to the exact tangent after three slow linearisations. Refused when an
+  /// element stays inverted. Collective.
   core::Outcome<core::Done> lead_on();
   core::Refusal not_balanced() const;
 
@@ -34,17 +36,17 @@ class Newton
   const cavity::Shape& walls() const { return walls_; }
   const Solution& solution() const { return *solution_; }
   StepReport& report() { return report_; }
-  /// Of the tissue at the state so far.
+  /// Balance of the tissue, from the last call of `balanced`.
   const tissue::Balance& balance() const { return balance_; }
 
  private:
-  /// How often a step is linearised, and until when.
+  /// Stopping rule: when and after how many linearisations the iteration ends.
   struct Effort
   {
-    int most;       ///< linearisations
-    double first;   ///< what is unbalanced at which one will do; 0: never
-    double later;   ///< and which ends the others
-    bool measured;  ///< whether the balance of the tissue is looked at
+    int most;       ///< largest number of linearisations
+    double first;   ///< unbalanced part at which the first linearisation suffices; 0: never
+    double later;   ///< unbalanced part of the forces at which a later one suffices
+    bool measured;  ///< the balance of the tissue is measured
   };
   static Effort effort_of(const Model& model, const core::TimeStep& now);
   double lag_tolerance(bool rows) const;
@@ -64,18 +66,18 @@ class Newton
   State next_;
   cavity::Shape walls_;
   StepReport report_;
-  std::optional<Solution> solution_;  ///< of the last linearisation: the multipliers of the step
-  double residual_ = std::numeric_limits<double>::infinity();  ///< what the next one is led by
-  int inverted_ = -1;  ///< file tet that is turned inside out, -1: none; agreed by all ranks
-  // Where the last linearisation led, as far as it was measured:
-  fem::OwnedField forces_;   ///< of needles and cavities on the tissue [N]
-  tissue::Balance balance_;  ///< of the tissue
-  // Where it started from:
+  std::optional<Solution> solution_;                           ///< of the last linearisation
+  double residual_ = std::numeric_limits<double>::infinity();  ///< last one, for lag_tolerance
+  int inverted_ = -1;  ///< inverted tet in file order, -1: none; equal on all ranks
+  // At the solution of the last linearisation, empty when not measured:
+  fem::OwnedField forces_;   ///< forces of needles and cavities on the tissue [N]
+  tissue::Balance balance_;  ///< balance of the tissue
+  // At the start of the last linearisation:
   fem::OwnedField u_before_, forces_before_;
   double unbalanced_before_ = std::numeric_limits<double>::infinity();
   double lost_before_ = std::numeric_limits<double>::infinity();  ///< Balance::lost [N]
-  int inversions_ = 0;  ///< increments in a row that turned elements inside out
-  int slow_ = 0;        ///< linearisations that left more than half of what was unbalanced
+  int inversions_ = 0;  ///< increments in a row that inverted elements
+  int slow_ = 0;        ///< slow linearisations: residual not halved, or an element inverted
 };
 
 }  // namespace trocar::step

@@ -27,7 +27,7 @@ std::string inverted_at(const Scene& scene, int tet)
   const auto at = static_cast<std::size_t>(tet);
   const tissue::Model model = scene.tissue.model_of(static_cast<std::size_t>(mesh.region[at]));
   const bool is_linear = model == tissue::Model::linear;
-  const bool own = model != scene.tissue.model;  // the volume's own option decides
+  const bool own = model != scene.tissue.model;  // this volume has a model option of its own
   const std::string volume = mesh.volumes[static_cast<std::size_t>(mesh.region[at])];
   const std::string option = "-tissue_" + (own ? volume + "_" : std::string()) + "model";
   std::ostringstream text;

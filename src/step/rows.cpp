@@ -40,7 +40,8 @@ fem::OwnedField Solution::forces(const Model& model, const State& state, const c
 
 namespace {
 
-/// Gap of a row that counts as closed [m]: places are known to a part in 1e14.
+/// Largest gap of a row that counts as closed [m]. The floor of 1e-12 m is the accuracy of places,
+/// which are known to a part in 1e14.
 double closed_gap(const Model& model)
 {
   constexpr double no_gap = 1e-12;
@@ -62,7 +63,8 @@ bool gaps_closed(const Model& model, const Solution& solution, const Rows& here)
 
 namespace {
 
-/// The increment that a needle's own rest at a shape asks for, with the factor it had [m, rad].
+/// Increment by which needle i would answer its residual at `state`, with the factor of the last
+/// linearisation [m, rad].
 core::VecX next_increment(const Model& model, const Scheme& scheme, const State& state,
                           const Solution& solution, std::size_t i)
 {
@@ -79,8 +81,10 @@ core::VecX next_increment(const Model& model, const Scheme& scheme, const State&
 
 }  // namespace
 
-// The gaps of the rows in the new geometry, and what the beams' own rest makes of them. Along a
-// beam a change of place far below those is a huge force, but one that nothing else feels.
+// Measures the gaps of the lateral rows in the new geometry, changed by the increments with which
+// the beams would answer their residuals. A gap over W_ii is the force that would close it. The
+// residuals themselves are no measure: along a stiff beam a displacement far below the gaps is a
+// huge force, which no other body feels.
 double left_across(const Model& model, const Scheme& scheme, const State& state,
                    const Solution& solution, const Rows& here)
 {
@@ -88,7 +92,7 @@ double left_across(const Model& model, const Scheme& scheme, const State& state,
   for (std::size_t i = 0; i < model.needles.size(); ++i)
     d.push_back(next_increment(model, scheme, state, solution, i));
   const core::VecX& lambda = solution.lambda();
-  std::vector<double> largest(model.needles.size(), 0.0), change = largest;  // [N]
+  std::vector<double> largest(model.needles.size(), 0.0), change = largest;  // by needle [N]
   for (const law::Block& block : here.set.blocks()) {
     const int i = block.first;
     const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(i)];

@@ -5,7 +5,8 @@ namespace {
 
 using core::Vec3;
 
-/// What a velocity at τ from the end of the step stands for there; see past_of.
+/// Coefficients in v = u' + m u'' + q u''' for a velocity v at the time τ from the end of the step,
+/// with the derivatives at the end (see the constructor of Scheme).
 struct Moments
 {
   double m, q;  ///< [s], [s²]
@@ -13,7 +14,7 @@ struct Moments
   Moments operator-(const Moments& other) const { return {m - other.m, q - other.q}; }
 };
 
-/// (u - u_n)/h.
+/// Error terms of the velocity (u - u_n)/h.
 Differenced differenced_once(double h)
 {
   return {0.5 * h, h * h / 6.0};
@@ -24,7 +25,7 @@ Moments moments(const Differenced& v, double tau)
   return {tau - v.lag, 0.5 * tau * tau - v.lag * tau + v.curvature};
 }
 
-/// û = u_n + u (u_n - u_before), and v̂ likewise.
+/// Coefficients u and v in û = u_n + u (u_n - u_before) and v̂ = v_n + v (v_n - v_before).
 struct Extrapolation
 {
   double u, v;
@@ -47,9 +48,9 @@ void extrapolate(const Extrapolation& past, const needle::NeedleState& before,
   }
 }
 
-/// How the velocity of a state, from which a step of length h begins, was differenced. At a start
-/// it is exact. Where nothing is driven no force shows that, and the first step may have the
-/// operator of all others: the start then counts as one more step of the same length.
+/// Error terms of the velocity of `state`, from which a step of length h begins. The velocity of
+/// the start is exact. If nothing is driven there, no force depends on these terms. The start then
+/// counts as the end of a step of length h, so that the first step has the operator of all others.
 Differenced velocity_of(const Model& model, const State& state, double h)
 {
   if (state.h > 0.0) return state.velocity;
@@ -58,27 +59,28 @@ Differenced velocity_of(const Model& model, const State& state, double h)
 
 }  // namespace
 
-// Velocities of positions that rows prescribe are exact differences, whose error changes with the
-// length of the step; differenced again for the acceleration it would be divided by that length:
-// forces of driven masses, of fluids and of stuck needles would be off by a part that does not
-// vanish (the constrained motion is of index 3). So it is counted in. A velocity v_i at τ_i ≤ 0
-// from the end of the step stands for  u' + m_i u'' + q_i u'''  there, with m = τ - lag and q =
-// τ²/2 - lag τ + curvature, and  a = Σ c_i v_i  has  Σ c_i = 0,  Σ c_i m_i = 1  and, with three of
-// them, Σ c_i q_i = 0. With equal steps these are the classical formulas.
+// Rows and supports prescribe positions exactly. Velocities are differences of positions, and their
+// error changes with the length of the step. The acceleration is a difference of velocities, so
+// this error would be divided by the step length. The forces of driven masses, of fluids and of
+// stuck needles would then have an error that does not vanish with h (the constrained motion is of
+// index 3). The scheme therefore takes this error into account. A velocity v_i at τ_i ≤ 0 from the
+// end of the step equals  u' + m_i u'' + q_i u'''  at the end, with m = τ - lag and
+// q = τ²/2 - lag τ + curvature. The acceleration is  a = Σ c_i v_i  with  Σ c_i = 0,  Σ c_i m_i = 1
+// and, from three velocities, also  Σ c_i q_i = 0. Equal steps give the classical formulas.
 //
-// Backward Euler, v = (u - u_n)/h: lag h/2, so that a = (v - v_n)/h̄ with h̄ the mean of both steps'
-// lengths, and half the step from a start where v_n is exact.
+// Backward Euler, v = (u - u_n)/h: the lag is h/2. Hence a = (v - v_n)/h̄, where h̄ is the mean
+// length of this step and the one before. After a start, where v_n is exact, h̄ is h/2.
 //
 // BDF2 (Hairer, Norsett and Wanner 1993, III.5): with r = h/h_before
-//   h v = lead (u - û),  lead = (1 + 2r)/(1 + r),  û = u_n + r²/(1 + 2r) (u_n - u_before),
-// no lag, curvature -h (h + h_before)/6. Its first step is backward Euler's, and one whose length
-// is out of proportion to that before; where the three velocities have no sound acceleration, the
-// last two make it, to first order.
+//   h v = lead (u - û),  lead = (1 + 2r)/(1 + r),  û = u_n + r²/(1 + 2r) (u_n - u_before).
+// The lag is 0 and the curvature -h (h + h_before)/6. Backward Euler takes the first step, and any
+// step with r outside `shortest` to `longest`. Where the three velocities have no sound
+// acceleration, the last two give one of first order.
 Scheme::Scheme(const Model& model, const State& old, const core::TimeStep& asked)
     : now_(asked), past_(&old), old_velocity_(velocity_of(model, old, asked.h))
 {
   if (now_.is_static) return;
-  constexpr double longest = 2.0 + 1e-6, shortest = 0.2 - 1e-6;  // stable up to 1 + √2
+  constexpr double longest = 2.0 + 1e-6, shortest = 0.2 - 1e-6;  // stable for r <= 1 + √2
   const double h = now_.h, r = old.h > 0.0 ? h / old.h : 0.0;
   velocity_ = differenced_once(h);
   now_.interval = h - velocity_.lag + old_velocity_.lag;
@@ -93,9 +95,9 @@ void Scheme::extrapolate(const State& old, double r)
   const Moments end = moments(velocity_, 0.0);
   const Moments one = moments(old.velocity, -h) - end;
   const Moments two = moments(old.before->velocity, -h - old.h) - end;
-  // 1/Σc and c_two/Σc of the three: some sequences (halves of halves) have no such acceleration, or
-  // a nearly singular one.
-  constexpr double least = 0.25, most = 2.5;  // of h
+  // h̄ = 1/c with the coefficient c of the new velocity, from the three conditions above. After some
+  // sequences of steps (halves of halves) they have no solution, or are nearly singular.
+  constexpr double least = 0.25, most = 2.5;  // limits of h̄/h
   const double interval = (one.m * two.q - two.m * one.q) / (one.q - two.q);
   const bool three = interval >= least * h && interval <= most * h;
   now_.interval = three ? interval : -moments(old.velocity, -h).m;

@@ -6,22 +6,23 @@
 
 namespace trocar::step {
 
-/// How a step's time derivatives follow from its end: backward Euler or BDF2, for steps of any
-/// length.
+/// Time scheme of one step: backward Euler or BDF2, for steps of different length. It gives
+/// velocity and acceleration at the end of the step from the displacement there (docs/theory.md
+/// section 1).
 class Scheme
 {
  public:
-  /// Borrows the old state.
+  /// Borrows the old state. `asked`: the step, still without `lead` and `interval`.
   Scheme(const Model& model, const State& old, const core::TimeStep& asked);
   Scheme(const Scheme&) = delete;
   Scheme& operator=(const Scheme&) = delete;
 
-  const core::TimeStep& now() const { return now_; }  ///< with the rates of the scheme
-  /// û and v̂ in h v = lead (u - û) and a = (v - v̂)/h̄.
+  const core::TimeStep& now() const { return now_; }  ///< `asked` with the scheme's rates
+  /// State whose u and v are the û and v̂ of h v = lead (u - û) and a = (v - v̂)/h̄.
   const State& past() const { return *past_; }
-  /// What the new velocity stands for.
+  /// Error terms of the velocity at the end of the step.
   const Differenced& velocity() const { return velocity_; }
-  /// The old state's, as this step sees it.
+  /// Error terms that this step assumes for the velocity of the old state.
   const Differenced& old_velocity() const { return old_velocity_; }
 
  private:

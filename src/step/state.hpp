@@ -10,14 +10,14 @@
 
 namespace trocar::step {
 
-/// Where the energy went [J]: what is stored at the end of a step, and sums since the start.
-/// supplied = stored - stored at the start + friction + cutting + damping + rest; the rest is what
-/// backward Euler loses and what frozen geometry leaves.
+/// Energy account [J]: energies stored at the end of a step, and sums since the start.
+///   supplied = elastic + kinetic - stored_at_start + friction + cutting + damping + rest.
+/// The rest is what backward Euler dissipates, and the error of geometry that a step keeps frozen.
 struct EnergyAccount
 {
   double elastic = 0.0, kinetic = 0.0;
   double stored_at_start = 0.0;
-  double supplied = 0.0;  ///< by holders, loads and moving supports
+  double supplied = 0.0;  ///< work of holders, loads, fluids and moving supports
   double friction = 0.0, cutting = 0.0, damping = 0.0;
 
   double rest() const
@@ -25,7 +25,7 @@ struct EnergyAccount
     return supplied - (elastic + kinetic - stored_at_start) - friction - cutting - damping;
   }
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -39,13 +39,14 @@ struct EnergyAccount
   }
 };
 
-/// Velocity as it was differenced from displacements: v = u'(t) - lag u'' + curvature u''' + O(h³).
+/// Error terms of a velocity that is a difference of displacements:
+///   v = u'(t) - lag u'' + curvature u''' + O(h³).
 struct Differenced
 {
   double lag = 0.0;        ///< [s]
   double curvature = 0.0;  ///< [s²]
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -54,14 +55,14 @@ struct Differenced
   }
 };
 
-/// What BDF2 remembers of the step before.
+/// The state at the start of the last step, as far as BDF2 needs it.
 struct PreviousStep
 {
   Differenced velocity;
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
@@ -71,12 +72,12 @@ struct PreviousStep
   }
 };
 
-/// All that changes in a run. A value: a rejected step leaves no trace.
+/// Everything that changes in a run. A value type, so that a rejected step leaves no trace in it.
 struct State
 {
-  double t = 0.0;        ///< [s]
-  double h = 0.0;        ///< length of the step that led here [s]; 0: none in time did
-  Differenced velocity;  ///< exact where none did
+  double t = 0.0;        ///< time [s]
+  double h = 0.0;        ///< length of the step that ended here [s]; 0: start or statics
+  Differenced velocity;  ///< error terms of the velocities; 0: exact
   tissue::TissueState tissue;
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
@@ -84,7 +85,7 @@ struct State
   std::optional<PreviousStep> before;  ///< with -time_scheme bdf2 only
   EnergyAccount energy;                ///< kept with -output_energy only
 
-  /// See core/visit.hpp.
+  /// Names every member and its unit, see core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {

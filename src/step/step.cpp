@@ -8,16 +8,17 @@
 
 namespace trocar::step {
 
-// The step of both papers: every body moves freely, the rows that couple them are solved in one
-// small dense problem, and the bodies are corrected by it; again until all is balanced.
+// A step as in both papers. Every body moves freely (part 2). The rows that couple the bodies (3)
+// are solved in one small dense problem (4). Its multipliers correct the bodies (5). Parts 2 to 5
+// are repeated until all forces are balanced.
 Outcome<Accepted> advance(Model& model, const State& old, const core::TimeStep& step)
 {
   const Scheme scheme(model, old, step);
-  auto next = predict(model, old, scheme);  // 1 events, decided before and frozen during the solve
+  auto next = predict(model, old, scheme);  // part 1: events, fixed from here on
   if (!next) return next.refusal();
   Newton newton(model, scheme, std::move(*next));
   while (newton.goes_on()) {
-    if (const auto solved = newton.linearise(); !solved) return solved.refusal();  // 2 to 5
+    if (const auto solved = newton.linearise(); !solved) return solved.refusal();  // parts 2 to 5
     if (newton.balanced()) return accept(model, old, scheme, newton);
     if (const auto led = newton.lead_on(); !led) return led.refusal();
   }
@@ -55,7 +56,7 @@ Outcome<Accepted> initial_state(Model& model)
 Outcome<Accepted> equilibrium(Model& model, const State& old, const core::TimeStep& now)
 {
   constexpr int most_load_steps = 64;
-  // Along a path in time the stepper halves the step; only the start is loaded in parts.
+  // Only the start is loaded in parts. Later equilibria are retried in half steps by TimeStepper.
   const int most_parts = now.start ? most_load_steps : 1;
   for (int parts = 1;; parts *= 2) {
     State from = old;

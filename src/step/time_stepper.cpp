@@ -32,7 +32,7 @@ State TimeStepper::run(State state, const Progress& from)
   const TimeSettings& time = model_->scene.time;
   const long steps = step_count(time);
   for (long n = from.nominal + 1; n <= steps; ++n) {
-    const bool not_whole = time.step != time.asked;  // T/N times N may miss T by round-off
+    const bool not_whole = time.step != time.asked;  // then steps * h may miss `end` by rounding
     const double t = n == steps && not_whole ? time.end : static_cast<double>(n) * time.step;
     state = advance(state, {t, time.step, time.is_static});
     if (!observer_->goes_on(state, at_)) break;

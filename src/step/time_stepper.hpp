@@ -6,46 +6,48 @@
 
 namespace trocar::step {
 
-/// What somebody outside wants of a run between two steps; the largest of all ranks' counts.
+/// Request to a run between two steps. The largest request of all ranks is served.
 enum class Wish { nothing = 0, checkpoint = 1, end = 2 };
 
-/// Where a run has come to with an accepted step.
+/// Progress of a run at an accepted step.
 struct Progress
 {
-  int accepted = 0;           ///< steps so far, parts of halved ones each for itself; 0: the start
-  long nominal = 0;           ///< steps of full length that are done
-  bool whole = true;          ///< one of these has just ended; false between the parts of one
-  double seconds = 0.0;       ///< wall time of this step, the longest of all ranks
-  Wish wish = Wish::nothing;  ///< the largest of all ranks'
+  int accepted = 0;           ///< steps so far; every part of a halved step counts; 0: the start
+  long nominal = 0;           ///< completed steps of full length
+  bool whole = true;          ///< a step of full length has just ended; false: only a part of one
+  double seconds = 0.0;       ///< wall time of this step, the longest of all ranks [s]
+  Wish wish = Wish::nothing;  ///< the largest request of all ranks
 };
 
-/// Is told how a run goes. Everything is called on every rank.
+/// Receives the steps of a run. Every function is called on every rank.
 class Observer
 {
  public:
   virtual ~Observer() = default;
   virtual void accepted(const State& state, const StepReport& report, const Progress& at) = 0;
   virtual void rejected(double t, const std::string& why) = 0;
-  /// What this rank wants. Agreed by the reduction of the step's time.
+  /// Request of this rank. The largest of all ranks is found together with the step's wall time.
   virtual Wish wish() const { return Wish::nothing; }
-  /// After every step of full length; false ends the run there.
+  /// Called after every step of full length. False ends the run there.
   virtual bool goes_on(const State& /*state*/, const Progress& /*at*/) { return true; }
 };
 
-/// Takes a model through time: equal steps to the end, each in halves when it is rejected, at
-/// most 8 times over.
+/// Takes a model through time in equal steps. A rejected step is retried as two halves, and so is
+/// each half. A step is halved at most 8 times.
 class TimeStepper
 {
  public:
-  /// Borrows both.
+  /// Borrows both arguments.
   TimeStepper(Model& model, Observer& observer) : model_(&model), observer_(&observer) {}
 
-  /// The state before the first step. Failure (70) when there is none. Collective.
+  /// Makes the state before the first step. Throws Failure (70) when no equilibrium is found.
+  /// Collective.
   State start();
-  /// From the start, or from where an earlier run had come to, to the end of the scene or where the
-  /// observer ends it. Failure (70) when a step is rejected however short it is. Collective.
+  /// Runs from `state` to the end of the scene, or until the observer ends the run. `from`:
+  /// progress at `state`, for runs that resume an earlier one. Throws Failure (70) when a step is
+  /// rejected even after 8 halvings. Collective.
   State run(State state, const Progress& from = {});
-  /// One step of full length. Failure (70) likewise. Collective.
+  /// Takes one step of full length. Throws Failure (70) as `run` does. Collective.
   State advance(const State& old, const core::TimeStep& now);
 
  private:
