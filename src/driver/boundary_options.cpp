@@ -14,7 +14,8 @@ namespace {
 using core::Options;
 using core::Vec3;
 
-/// A group that is named again is fixed along all axes named with it: one support.
+/// Reads -fix. A group that is listed more than once becomes one support, fixed along all the axes
+/// listed with it.
 std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
 {
   std::vector<tissue::BoundaryConditions::Fixed> fixed;
@@ -39,7 +40,9 @@ std::vector<tissue::BoundaryConditions::Fixed> read_fixed(Options& options)
   return fixed;
 }
 
-/// Displacement of every node of a group, by file node.
+/// Reads the displacement [m] of every node of a group from a CSV file (columns node,x,y,z; node is
+/// the Gmsh tag). Key of the result: index of the node in the mesh. Throws Failure (65).
+/// Collective.
 std::map<int, Vec3> read_field(const std::string& file, const std::string& group,
                                const mesh::Mesh& mesh, const base::Comm& comm)
 {
@@ -48,7 +51,7 @@ std::map<int, Vec3> read_field(const std::string& file, const std::string& group
     throw core::data_error(file + ": columns must be node,x,y,z");
   std::map<long long, Vec3> by_tag;
   for (const auto& row : table.rows) {
-    constexpr double most = 9e15;  // integers that a number with a point still tells apart
+    constexpr double most = 9e15;  // a double holds all integers up to 2^53 = 9.007e15 exactly
     if (row[0] != std::floor(row[0]) || std::abs(row[0]) > most)
       throw core::data_error(file + ": node " + core::shown(row[0]) + " is no tag of a node");
     const auto tag = static_cast<long long>(row[0]);
@@ -67,7 +70,7 @@ std::map<int, Vec3> read_field(const std::string& file, const std::string& group
     else
       missing.push_back(node);
   }
-  for (int node : missing) {  // the middle of an edge may take the mean of its ends
+  for (int node : missing) {  // a middle node without a row takes the mean of its edge
     const auto ends = mesh::ends_of_middle(mesh, node);
     if (!ends || !field.count((*ends)[0]) || !field.count((*ends)[1]))
       throw core::data_error(file + ": node " +

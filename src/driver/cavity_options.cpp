@@ -54,7 +54,7 @@ void read_law(Options& options, cavity::CavitySettings& one, const base::Comm& c
                                           {"gas", Kind::gas},
                                           {"table", Kind::table}};
   one.fluid.kind = kinds.at(law);
-  // What belongs to another law would be silently without effect.
+  // Refuses an option of another law: it would have no effect.
   const auto number = [&](const std::string& option, const std::vector<std::string>& laws) {
     const std::string full = "cavity_<cavity>_" + option;
     if (options.given_for(full, one.name) && std::find(laws.begin(), laws.end(), law) == laws.end())
@@ -84,7 +84,7 @@ void read_law(Options& options, cavity::CavitySettings& one, const base::Comm& c
     throw bad("cavity_table", one.name, "law " + law + " does not know it");
 }
 
-/// What a curve scales: a given pressure, or the amount of fluid.
+/// Reads the factor over time of a cavity. It scales a given pressure, or else the amount of fluid.
 void read_scale(Options& options, cavity::CavitySettings& one, const base::Comm& comm)
 {
   const auto curve = read_curve(options.text("cavity_<cavity>_curve", one.name), comm);
@@ -93,7 +93,7 @@ void read_scale(Options& options, cavity::CavitySettings& one, const base::Comm&
     throw bad("cavity_curve", one.name, "beside an initial pressure it must begin with 1");
 }
 
-/// Names of the volumes at a wall whose tissue is not linear.
+/// Names of the volumes of nonlinear tissue that have a face on the wall.
 std::vector<std::string> bending_volumes(const Scenario& scenario, const std::string& surface)
 {
   const mesh::Mesh& mesh = scenario.mesh;
@@ -110,8 +110,9 @@ std::vector<std::string> bending_volumes(const Scenario& scenario, const std::st
   return {names.begin(), names.end()};
 }
 
-/// `linear` and `frozen` push on the wall as it was undeformed: no nonlinear tissue may be there.
-/// The frozen model's responses to a pressure are kept by operator: all tissue must be linear.
+/// Models `linear` and `frozen` load the undeformed wall, so the tissue at the wall must be linear.
+/// Model `frozen` also reuses the responses to a unit pressure while the operator is the same, so
+/// all tissue must be linear. Failure (64).
 void require_linear_tissue(const Scenario& scenario, const cavity::CavitySettings& one,
                            const std::string& model)
 {
@@ -159,7 +160,8 @@ std::string wall_of(Options& options, const std::string& name)
   return surface.empty() ? region : surface;
 }
 
-/// All or no cavities are frozen: one solver solves them outside the constraint system.
+/// Either all cavities are frozen or none, and frozen cavities share one solver: a single search
+/// finds all their pressures outside the constraint system. Failure (64).
 void require_one_way(const std::vector<cavity::CavitySettings>& cavities)
 {
   const cavity::CavitySettings* frozen = nullptr;

@@ -8,21 +8,21 @@
 
 namespace trocar::driver {
 
-/// Makes checkpoints of a run, at the ends of steps of full length alone. A checkpoint is a
-/// barrier: caches are dropped, so that what follows does not depend on whether the run went on or
-/// another one did.
+/// Decides when checkpoints are due and writes them, only after steps of full length. Every
+/// checkpoint drops the caches. So the next steps are the same, whether this run takes them or a
+/// run that restarts from the checkpoint.
 class Checkpoints
 {
  public:
-  /// Borrows all. `since_start`: of the program, which -time_wall counts from.
+  /// Borrows model, scenario and recorder. `since_start`: stopwatch of the program, for -time_wall.
   Checkpoints(step::Model& model, const Scenario& scenario, Recorder& recorder,
               const core::Stopwatch& since_start);
 
-  /// What this rank wants after the step, by its signals and clock.
+  /// What this rank asks for after the present step: signals and its clock decide. Not collective.
   step::Wish wish() const;
-  /// False when the run ends here. Collective.
+  /// Writes a checkpoint when one is due after this step. False when the run ends here. Collective.
   bool goes_on(const step::State& state, const step::Progress& at);
-  /// The time at which it ended, if it did [s].
+  /// Time of the checkpoint that ended the run early [s]; empty: the run did not end early.
   std::optional<double> stopped() const { return stopped_; }
 
  private:

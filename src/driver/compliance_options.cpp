@@ -29,13 +29,14 @@ void read_compliance(core::Options& options, Scenario& scenario)
         "option -compliance_stale_error: nothing is stale without "
         "-compliance_reuse stale");
   tissue.lag_tolerance = options.real("compliance_lag");
-  constexpr double least_lag = 1e-12;  // below it round-off decides
+  constexpr double least_lag = 1e-12;  // round-off prevents a smaller residual
   if (tissue.lag_tolerance > 0.0 && tissue.lag_tolerance < least_lag)
     throw core::option_error(
         "option -compliance_lag: round-off does not let a step come closer "
         "than 1e-12; 0 factors in every step");
   if (tissue.reuse == solve::Reuse::none) tissue.lag_tolerance = 0.0;
-  // The eta law is made of the compliance itself, not of what it answers.
+  // The eta law needs the compliance C of the present operator, which a lagged factor does not
+  // give.
   if (scenario.insertion.eta > 0.0) tissue.lag_tolerance = 0.0;
   const bool turns = tissue.any(tissue::Model::corotational) &&
                      !tissue.any(tissue::Model::neo_hookean) && tissue.lag_tolerance > 0.0;

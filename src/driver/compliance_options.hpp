@@ -5,7 +5,7 @@
 
 namespace trocar::driver {
 
-/// Reads the -compliance_ options into the scenario's tissue; its insertion must be known by then.
+/// Reads the -compliance_ options into `scenario.tissue`; `scenario.insertion` must be set before.
 /// Failure (64) for choices that exclude each other.
 void read_compliance(core::Options& options, Scenario& scenario);
 

@@ -8,7 +8,7 @@ namespace {
 
 using core::Vec3;
 
-/// Histories as they are named, each with its unit and where its numbers come from.
+/// Collects the histories: name, unit and the function that gives the values.
 class List
 {
  public:
@@ -27,7 +27,7 @@ class List
                        return std::vector<double>{v.x(), v.y(), v.z()};
                      }});
   }
-  /// The last one's name in older versions.
+  /// Gives the last history its former name, for readers of older files.
   void keep_name(const std::string& old) { list_.back().series.old_name = old; }
   std::vector<History> take() { return std::move(list_); }
 
@@ -122,7 +122,8 @@ void add_energy(List& list)
   list.number("energy/rest", "J", [](const Moment& now) { return now.state.energy.rest(); });
 }
 
-/// Least distance along the path between neighbouring coupling points; 0 with fewer than two.
+/// Least distance along a path between neighbouring coupling points, over all needles [m]; 0 when
+/// no needle has two points.
 double smallest_gap(const step::State& state)
 {
   double smallest = 0.0;
@@ -167,7 +168,7 @@ void add_compared(const std::string& name, std::size_t i, List& list)
   add("factor_seconds", "s", &law::BenchmarkResult::factor_seconds);
 }
 
-/// What the step took.
+/// Histories of the cost of a step, and of what its iterations leave unsolved.
 void add_work(List& list)
 {
   list.number("compliance/probes", "1",

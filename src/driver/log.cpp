@@ -74,7 +74,8 @@ void Log::cavities(const cavity::Cavities& cavities) const
         std::printf(" %lld", scenario.mesh.node_tag[static_cast<std::size_t>(node)]);
       std::printf("\n");
     }
-    // Shear waves that the steps resolve would take the fluid along.
+    // The fluid is modelled without inertia. This is wrong when the steps are short enough to
+    // resolve shear waves that pass the cavity.
     const double crossing = std::cbrt(wall.volume()) * std::sqrt(density / softest);
     if (!scenario.time.is_static && scenario.time.step < crossing && scenario.time.end > 0.0)
       std::printf(
@@ -119,8 +120,8 @@ void Log::step(int number, const step::State& state, const step::StepReport& rep
   std::fflush(stdout);
 }
 
-/// Of what is taken but should not be: elements that linear tissue was allowed to fold, and energy
-/// out of nothing.
+/// Warns of accepted steps with doubtful results: an inverted element in linear tissue, a tip
+/// support wider than asked, or a gain of energy.
 void Log::warn(const step::State& state, const step::StepReport& report)
 {
   const bool folded = report.folded >= 0;

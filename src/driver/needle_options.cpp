@@ -61,7 +61,8 @@ needle::NeedleSettings read_needle(core::Options& options, const std::string& na
   return settings;
 }
 
-/// The needle's own words must not look like another option of its area.
+/// Refuses names that make options ambiguous: with a needle `inner`, -needle_inner_radius would
+/// have two meanings. Failure (64).
 void check_needle_names(const std::vector<std::string>& names)
 {
   for (const std::string& name : names)
@@ -71,10 +72,12 @@ void check_needle_names(const std::vector<std::string>& names)
                                  "' begins another option of the needle's area");
 }
 
-/// A base on the surface is outside: the tested point is this part of the length behind it.
+/// A base on the surface counts as outside: the tested point lies this part of the needle's length
+/// behind the base.
 constexpr double on_surface = 1e-6;
 
-/// Along a trajectory the base must stay outside and the tip must meet the tissue at least once.
+/// Throws Failure (65) when the base enters the tissue on the way from one row of the trajectory to
+/// the next, or when the shaft meets the tissue at no row.
 void check_trajectory_places(const needle::BaseMotion& motion, const insertion::Deformed& tissue,
                              const std::string& who)
 {
@@ -97,7 +100,8 @@ void check_trajectory_places(const needle::BaseMotion& motion, const insertion::
                            " its shaft never meets the tissue (at the times given)");
 }
 
-/// Refuses needles that can never do what they are told, before anything is computed.
+/// Throws Failure (65) for a needle whose prescribed motion is impossible in the undeformed mesh.
+/// Called before anything is computed.
 void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh,
                   const mesh::Locator& locator, double end)
 {
@@ -132,8 +136,8 @@ void check_needle(const needle::NeedleSettings& settings, const mesh::Mesh& mesh
                            "-needle_direction)");
 }
 
-/// Tets along the straight way of the tip from the entry to the depth, or from row to row of a
-/// trajectory.
+/// Tets on the planned path of the tip: straight from the entry to the depth, then straight between
+/// the tip positions at the rows of a trajectory.
 std::set<int> planned_tets(const needle::BaseMotion& motion, const mesh::Mesh& mesh,
                            const mesh::Locator& locator)
 {

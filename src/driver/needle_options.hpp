@@ -9,16 +9,16 @@
 
 namespace trocar::driver {
 
-/// The needles of a scene with everything about them, checked against the undeformed mesh: a
-/// needle that can never do what it is told is a Failure (64 or 65). `end` is the end of the run
-/// [s]. Collective.
+/// Reads all needles with their options and checks them against the undeformed mesh. Failure (64 or
+/// 65) when a needle can never move as prescribed. `end`: end of the run [s]. Collective.
 std::vector<needle::NeedleSettings> read_needles(core::Options& options, const mesh::Mesh& mesh,
                                                  const mesh::Locator& locator, double end,
                                                  const base::Comm& comm);
 
-/// File nodes of the tets that the needles' planned paths go through, and of `layers` rings of
-/// tets around those, as many as keep it below 3000 dofs. Trajectories are taken as the straight
-/// ways of their tips from row to row; 0 layers give none.
+/// File nodes of the tets on the planned paths of the needles, and of up to `layers` rings of tets
+/// around these tets. Rings are added while at most 1000 nodes (3000 dofs) result; the list is
+/// empty when the paths alone have more, or when `layers` is 0. Between rows of a trajectory the
+/// tip is assumed to move straight.
 std::vector<int> planned_nodes(const std::vector<needle::NeedleSettings>& needles,
                                const mesh::Mesh& mesh, const mesh::Locator& locator, int layers);
 

@@ -44,7 +44,7 @@ void find_needle(const std::string& needle, const Scenario& scenario,
               "no needle '" + needle + "'" + core::did_you_mean(needle, names));
 }
 
-/// Refuses what would have no effect.
+/// Throws Failure (64) for options of a conduit that have no effect or exclude each other.
 void check_conduit(const cavity::ConduitSettings& conduit)
 {
   const bool hole = conduit.hole_resistance > 0.0 || conduit.hole_radius > 0.0;
@@ -63,7 +63,8 @@ void check_conduit(const cavity::ConduitSettings& conduit)
     throw bad("gap", conduit.name, "give a resistance or a gap, not both");
 }
 
-/// What flows into a cavity must be a fluid like its own.
+/// Throws Failure (64) when a conduit joins cavities with different fluids. A cavity has one fluid,
+/// so what flows in must be the same.
 void require_one_fluid(const cavity::ConduitSettings& conduit,
                        const std::vector<cavity::CavitySettings>& cavities)
 {

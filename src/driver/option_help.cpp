@@ -30,7 +30,7 @@ const char* type_name(OptionType type)
   return "";
 }
 
-/// "range or choices" as one cell.
+/// Text for the column "range or choices".
 std::string limits(const OptionSpec& spec)
 {
   return spec.choices.empty() ? core::range_text(spec) : core::join(spec.choices);

@@ -6,7 +6,7 @@
 
 #include "core/options.hpp"
 
-// Short names for the rows of the option table.
+// Functions that make rows of the option table, one for each kind of option.
 namespace trocar::driver {
 
 using core::OptionSpec;
@@ -67,7 +67,7 @@ inline OptionSpec withdrawal(const std::string& name)
           -1.0, infinity,         false, false};
 }
 
-/// Declares an option and its override for one named thing: tissue_young, tissue_<volume>_young.
+/// Adds an option, for example tissue_young, and its override for one group, tissue_<volume>_young.
 inline void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec,
                           const std::string& group)
 {
@@ -78,7 +78,7 @@ inline void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec
   table.push_back(own);
 }
 
-/// Rows of cavities and of the network between them.
+/// Adds the options of cavities and of the conduits between them.
 void add_cavity_options(std::vector<OptionSpec>& table);
 
 }  // namespace trocar::driver

@@ -7,7 +7,7 @@
 
 namespace trocar::driver {
 
-/// Every option of the program. The one place where an option is declared.
+/// All options of the program. Options are declared nowhere else.
 const std::vector<core::OptionSpec>& option_table();
 
 /// The table as plain text, for -help.

@@ -17,9 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using core::WrittenOption;
 
-constexpr std::uintmax_t largest_file = 16'000'000;  ///< [B], of options or CSV
+constexpr std::uintmax_t largest_file = 16'000'000;  ///< limit for options files and CSV files [B]
 
-/// The text of a file; a Failure of this code where it cannot be read.
+/// The text of a file. Throws a Failure with exit code `code` when it cannot be read; its line
+/// begins with `before`.
 std::string text_of(const std::string& file, const std::string& before, core::ExitCode code)
 {
   const auto failure = [&](const std::string& why) {
@@ -37,7 +38,8 @@ std::string text_of(const std::string& file, const std::string& before, core::Ex
   return text.str();
 }
 
-/// A file that an option names, from the working folder or from beside the options file.
+/// Path of a file that an option names: in the working folder, else in `beside`, the folder of the
+/// options file. Returns `file` itself when it is in neither.
 std::string found(const std::string& file, const fs::path& beside)
 {
   std::error_code ignored;
@@ -53,20 +55,22 @@ const core::OptionSpec* row_of(const std::string& name)
   return nullptr;
 }
 
-/// Options that were renamed go by their old names for one version.
+/// The present name of an option. Old names of renamed options are accepted for one version.
 std::string present_name(const std::string& name)
 {
   if (name == "edges") return "conduits";
   return name.rfind("edge_", 0) == 0 ? "conduit_" + name.substr(5) : name;
 }
 
-/// Options of one source after the other, the weakest first.
+/// Collects the options of all sources. A later call replaces values of earlier calls, so the
+/// source with the lowest precedence comes first.
 class Collector
 {
  public:
   explicit Collector(Invocation& invocation) : invocation_(invocation) {}
 
-  /// Takes those of one source, but for the files they name: these come first, as they are weaker.
+  /// Takes the options in the files that `options` names. Files have the lowest precedence, so call
+  /// this for all sources before the first `take`.
   void files_of(const std::vector<WrittenOption>& options)
   {
     for (const WrittenOption& one : options)
@@ -121,8 +125,8 @@ class Collector
 
   Invocation& invocation_;
   std::vector<WrittenOption> petsc_;
-  std::vector<fs::path> open_;  ///< files that are being read
-  int files_ = 0;               ///< that were
+  std::vector<fs::path> open_;  ///< files that are being read; a file may not include itself
+  int files_ = 0;               ///< number of options files read
 };
 
 void collect(Invocation& invocation)

@@ -10,26 +10,27 @@
 
 namespace trocar::driver {
 
-/// What the program was started with; the same on every rank.
+/// How the program was started. Equal on every rank; `arguments` are those of the rank itself.
 struct Invocation
 {
   std::vector<std::string> arguments;
-  std::string options_file;       ///< paths as given, joined by commas; "" when none was
-  std::string options_file_text;  ///< verbatim, of all of them in turn
-  std::map<std::string, core::OptionValue> given;  ///< options of our table
-  std::vector<std::string> petsc;                  ///< arguments for PETSc
-  std::vector<std::string> outdated{};             ///< old names that options came under
+  std::string options_file;       ///< paths of the options files, joined by commas; "": none
+  std::string options_file_text;  ///< texts of these files, one behind the other
+  std::map<std::string, core::OptionValue> given;  ///< options of `option_table`
+  std::vector<std::string> petsc;                  ///< arguments for PETSc, see `petsc_arguments`
+  std::vector<std::string> outdated{};             ///< old names of options that the user gave
 };
 
-/// Reads the arguments, the environment and the options files, which may name others. Of an option
-/// that is given more than once the command line's value is taken before PETSC_OPTIONS' and that
-/// before the files', the last one of each. Files that options name are looked for in the working
-/// folder and then beside the options file; their values are the paths that were found. What is
-/// neither ours nor PETSc's, words without an option, files that are not there or include
-/// themselves: Failure (64) with file and line. Collective.
+/// Reads the command line, PETSC_OPTIONS and the options files, which may name more options files.
+/// If an option is given more than once, the command line wins over PETSC_OPTIONS, and
+/// PETSC_OPTIONS wins over the files. Within one of them the last value wins. A file that an option
+/// names is looked for in the working folder, then in the folder of the options file; the value
+/// becomes the path that was found. Throws Failure (64) with file and line for an option that
+/// neither this program nor PETSc takes, for words before the first option, and for options files
+/// that do not exist or include themselves. Collective.
 Invocation read_invocation(int argc, char** argv, const base::Comm& comm);
 
-/// A CSV file that an option names, read on rank 0 and parsed on every rank. Failure (65).
+/// Reads a CSV file that an option names: rank 0 reads it, every rank parses it. Failure (65).
 /// Collective.
 core::Csv read_csv(const std::string& file, const base::Comm& comm);
 

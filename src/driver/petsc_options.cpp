@@ -13,10 +13,10 @@ namespace {
 
 const std::vector<std::string> solver_starts{"tissue_ksp_", "tissue_pc_", "tissue_mat_",
                                              "tissue_mg_", "tissue_sub_"};
-/// Reports of PETSc and MPI's memory at the end; without a value they go to the terminal.
+/// Reports that PETSc prints when the program ends. Without a value they go to the terminal.
 const std::vector<std::string> reports{"log_view", "malloc_view", "malloc_dump", "objects_dump"};
 const std::vector<std::string> switches{"malloc_debug", "fp_trap"};
-/// What PETSc asks for while it solves, not before.
+/// Options that PETSc looks up only in a solve, so they are still unused after set-up.
 const std::vector<std::string> asked_late{"tissue_ksp_view",
                                           "tissue_ksp_view_final_residual",
                                           "tissue_ksp_converged_reason",
@@ -29,7 +29,7 @@ const std::vector<std::string> asked_late{"tissue_ksp_view",
                                           "tissue_ksp_view_singularvalues",
                                           "tissue_pc_view",
                                           "tissue_mat_view"};
-/// Those people give most, for suggestions.
+/// Common options of the solver, for suggestions after a misspelling.
 const std::vector<std::string> frequent{"tissue_ksp_type",
                                         "tissue_ksp_rtol",
                                         "tissue_ksp_atol",
@@ -72,7 +72,7 @@ bool says_yes_or_no(std::string value)
   return among({"", "0", "1", "true", "false", "yes", "no", "on", "off"}, value);
 }
 
-/// Letters, digits and what stands in numbers and in names.
+/// True when all characters are letters, digits or one of "_.,+-".
 bool plain(const std::string& text)
 {
   return std::all_of(text.begin(), text.end(), [](char c) {
@@ -81,7 +81,7 @@ bool plain(const std::string& text)
   });
 }
 
-/// PETSc would let these write to files or open windows, where it may.
+/// True for options whose value could tell PETSc to write a file or open a window.
 bool shows_something(const std::string& name)
 {
   return name.find("_view") != std::string::npos || name.find("_monitor") != std::string::npos ||
@@ -89,7 +89,7 @@ bool shows_something(const std::string& name)
          name.find("_converged_rate") != std::string::npos;
 }
 
-/// Why PETSc may not have an option, "": it may.
+/// Reason why an option may not be passed to PETSc; "" when it may.
 std::string objection(const std::string& name, const std::string& value)
 {
   if (among(reports, name))
@@ -102,13 +102,13 @@ std::string objection(const std::string& name, const std::string& value)
     if (lower.find("python") != std::string::npos) return "code of others is not run";
     if (lower.find("ooc") != std::string::npos || lower == "tissue_mat_mumps_icntl_22")
       return "the solver would write files of its own";
-    // Units of Fortran that MUMPS writes to.
+    // These options choose the Fortran units to which MUMPS writes messages.
     if (among({"tissue_mat_mumps_icntl_1", "tissue_mat_mumps_icntl_2", "tissue_mat_mumps_icntl_3"},
               lower) &&
         value != "0" && value != "6")
       return "MUMPS would write files of its own: 6 is the terminal, 0 nothing";
   }
-  // Debian 12's corrupts memory when its factor is made anew or given back.
+  // SuperLU_DIST of Debian 12 corrupts memory when a factor is computed again or freed.
   if (value == "superlu_dist") return "SuperLU_DIST would end the run by a crash: take mumps";
   if (shows_something(name) && !among({"", "ascii", "true", "false", "0", "1"}, value))
     return "what is shown goes to the terminal: without a value, or with ascii";

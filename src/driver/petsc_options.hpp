@@ -7,16 +7,18 @@
 
 namespace trocar::driver {
 
-/// What PETSc's database gets, as arguments of its start: options of the tissue's linear solver and
-/// a few that report. Throws Failure (64) for every other one, and for values with which PETSc
-/// would write files or run code.
+/// Arguments for the start of PETSc: options of the tissue's linear solver and a few reports and
+/// switches. Throws Failure (64) for every other option, and for values with which PETSc would
+/// write files or run code.
 std::vector<std::string> petsc_arguments(const std::vector<core::WrittenOption>& options);
 
-/// True when the user chose the tissue's solver: some -tissue_ksp_* or -tissue_pc_* is given.
+/// True when the user gave an option of the tissue's PETSc solver, such as -tissue_ksp_* or
+/// -tissue_pc_*. Looks for options that PETSc has not used yet, so call it before the solver is set
+/// up.
 bool tissue_solver_given();
 
-/// Throws Failure (64) when PETSc has not used one of its options: a misspelt -tissue_ksp_rtoll, or
-/// one that `solver` does not ask for. To be called after set-up.
+/// Throws Failure (64) for a solver option that PETSc has not used: a misspelt name such as
+/// -tissue_ksp_rtoll, or an option that `solver` does not look up. Call it after set-up.
 void refuse_unused(const std::string& solver);
 
 }  // namespace trocar::driver

@@ -18,8 +18,8 @@
 namespace trocar::driver {
 namespace {
 
-/// True when every rank comes here within two seconds: then the failure was agreed and all may
-/// leave in order. Else somebody waits in a collective call that will never complete.
+/// True when every rank comes here within two seconds. Then all ranks know of the failure and may
+/// leave in order. Otherwise some rank waits in a collective call that will never complete.
 bool all_ranks_failed(MPI_Comm comm)
 {
   MPI_Request request = MPI_REQUEST_NULL;
@@ -35,7 +35,7 @@ bool all_ranks_failed(MPI_Comm comm)
 
 int fail(const base::Comm& comm, MPI_Comm alarm, int code, const char* line)
 {
-  handle_signals(false);  // a launcher that ends the others need not be told of
+  handle_signals(false);  // print nothing when the launcher ends this rank by a signal
   const bool agreed = all_ranks_failed(alarm);
   if (!agreed || comm.root()) std::fprintf(stderr, "trocar: error: %s\n", line);
   if (!agreed) MPI_Abort(comm.get(), code);

@@ -4,8 +4,8 @@
 
 namespace trocar::driver {
 
-/// Answers -help, -help_markdown and -version, which need neither MPI nor a scene. True when one
-/// of them was asked for.
+/// Answers -help, -help_markdown and -version, which need neither MPI nor a scene. Returns true
+/// when one of them was given.
 bool answer_questions(int argc, char** argv);
 
 /// The whole program on the ranks of `world`: PETSc session, options, set-up, run. Returns the

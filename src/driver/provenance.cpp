@@ -24,7 +24,7 @@ std::string mpi_version()
   return {text, static_cast<std::size_t>(length)};
 }
 
-/// Every option in PETSc's database, its own solvers' included, as one line.
+/// All options in PETSc's database, such as those of the solvers, as one line.
 std::string petsc_options()
 {
   char* text = nullptr;

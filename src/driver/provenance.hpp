@@ -9,15 +9,16 @@
 
 namespace trocar::driver {
 
-/// Versions, commit and build of this program, one line.
+/// Version, commit and build of this program and the version of PETSc, in one line.
 std::string build_description();
 
-/// What a result file says about where it comes from. `solver` describes the tissue's solver.
+/// Data on the origin of the results, for /provenance. `solver`: description of the tissue's
+/// solver.
 io::Provenance provenance(const step::Model& model, const Invocation& invocation,
                           const std::vector<core::ResolvedOption>& options,
                           const std::string& solver);
 
-/// Who went on from where, one line.
+/// One line on a restart: date, step and time of the checkpoint, program, command line.
 std::string restart_note(const io::Checkpoint& from, const Invocation& invocation);
 
 }  // namespace trocar::driver

@@ -19,7 +19,8 @@ io::Field nodal_field(const std::string& name, const std::string& units,
           true, false};
 }
 
-/// Coupling points of all needles, one row each; ids are needle · 10⁶ + site.
+/// Coupling points of all needles, one row each. The id of a point is needle index · 10⁶ + number
+/// of its site.
 std::vector<io::Field> coupling_fields(const step::Model& model, const step::State& state,
                                        const fem::GlobalField& u)
 {
@@ -49,7 +50,7 @@ std::vector<io::Field> coupling_fields(const step::Model& model, const step::Sta
   return {id, position, lambda, stuck, tributary};
 }
 
-/// Every needle's axis, so that a picture needs no model of the needle.
+/// Axis and radius of every needle, so that ParaView can draw the needles.
 std::vector<io::Curve> needle_curves(const step::Model& model, const step::State& state)
 {
   std::vector<io::Curve> curves;
@@ -77,7 +78,7 @@ Recorder::Recorder(const step::Model& model, const Scenario& scenario, const Inv
     const std::string& folder = output_->folder;
     if (from && !scenario.restart.branch) {
       results_.emplace(folder, scenario.mesh, series, *from, restart_note(*from, invocation));
-      io::Checkpoint renewed = *from;  // it must know the file that was written anew
+      io::Checkpoint renewed = *from;  // run.h5 was rewritten, so its places and its sum changed
       results_->fill_in(renewed);
       io::write_checkpoint(folder, renewed);
     } else {

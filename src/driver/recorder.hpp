@@ -11,23 +11,25 @@
 
 namespace trocar::driver {
 
-/// Names what a run leaves behind and hands it to `io`, which knows fields but no physics.
+/// Turns states and reports of a run into named fields and histories, and passes them to `io`,
+/// which knows fields but no physics.
 class Recorder
 {
  public:
-  /// Borrows model and scenario. Makes the result folder on rank 0, or goes on in that of the
-  /// checkpoint `from` where the scenario does; Failure (74, 65) on every rank. Collective.
+  /// Borrows model and scenario. Makes the result folder on rank 0. With a checkpoint `from`, the
+  /// recorder continues in the folder of the checkpoint instead, unless the run is a branch.
+  /// Failure (74, 65) on every rank. Collective.
   Recorder(const step::Model& model, const Scenario& scenario, const Invocation& invocation,
            const std::vector<core::ResolvedOption>& options, const io::Checkpoint* from = nullptr);
 
-  /// One history row, and a field file when `with_fields`. `step` counts accepted steps.
-  /// Collective.
+  /// Writes one history row, and a field file when `with_fields`. `step`: number of accepted steps;
+  /// `seconds`: wall time of the step [s]. Collective.
   void record(const step::State& state, const step::StepReport& report, int step, double seconds,
               bool with_fields);
 
-  /// A dataset of its own in run.h5. Collective.
+  /// Writes one dataset into run.h5. Collective.
   void table(const std::string& path, const std::vector<double>& values, const std::string& units);
-  /// A checkpoint of a step that has just been recorded. Collective.
+  /// Writes a checkpoint of the step that was recorded last. Collective.
   void checkpoint(const step::State& state, const step::Progress& at);
   void close();  ///< collective
 

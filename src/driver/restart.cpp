@@ -27,8 +27,8 @@ bool ends(std::string_view name, std::string_view with)
   return name.size() >= with.size() && name.substr(name.size() - with.size()) == with;
 }
 
-/// Output, tolerances, how much is computed at once and how long: nothing that the state is of, and
-/// nothing that decides which histories there are.
+/// Options that may differ in every restart: output, tolerances, solvers and the length of the run.
+/// They change neither the meaning of the state nor the list of histories.
 bool may_always_change(std::string_view name)
 {
   if (name == "constraint_compare" || name == "compliance_stale_error") return false;
@@ -44,7 +44,7 @@ bool may_always_change(std::string_view name)
                                                 [&](const char* one) { return ends(name, one); });
 }
 
-/// How needles move, from where they are.
+/// Options that may also differ in a branch: how needles move on from where they are.
 bool may_branch(std::string_view name)
 {
   constexpr std::array motion{"_velocity", "_depth", "_hold", "_trajectory"};
@@ -59,7 +59,8 @@ core::OptionType type_of(const std::string& name)
   return core::OptionType::text;
 }
 
-/// A value in the one form that equal values have: flags as one of two words, numbers as read.
+/// Canonical form of a value, the same for equal values: flags as "true" or "false", numbers in
+/// hexadecimal.
 std::vector<std::string> plain(const io::Checkpoint::Option& option)
 {
   if (type_of(option.name) == core::OptionType::flag) {
@@ -79,7 +80,7 @@ std::vector<std::string> plain(const io::Checkpoint::Option& option)
   return words;
 }
 
-/// The same contents of a file, or the same value.
+/// True when the values are equal, or the contents of the files that they name.
 bool same(const io::Checkpoint::Option& one, const io::Checkpoint::Option& other)
 {
   if (!one.hash.empty() || !other.hash.empty()) return one.hash == other.hash;
@@ -99,7 +100,8 @@ core::Failure refused(const io::Checkpoint::Option& was, const io::Checkpoint::O
       (may_branch(is.name) ? " (-restart_from, into another folder, can)" : "") + how);
 }
 
-/// Those that both runs have come first: what only one of them has mostly follows from these.
+/// Throws Failure (64) for an option that differs but must not. First come the options that both
+/// runs have: a difference in them is mostly the cause when only one run has some other option.
 void refuse_other_options(const io::Checkpoint& from,
                           const std::vector<io::Checkpoint::Option>& now, bool branch)
 {
@@ -119,7 +121,7 @@ void refuse_other_options(const io::Checkpoint& from,
     if (!may_change(name)) throw refused(was, {name, "", ""});
 }
 
-/// Whether two paths lead to one folder, which need not be there.
+/// True when two paths lead to the same folder. The folder need not exist.
 bool one_folder(const std::string& a, const std::string& b)
 {
   std::error_code ignored;
@@ -199,7 +201,7 @@ bool continue_time(const io::Checkpoint::Time& from, Scenario& scenario)
 {
   step::TimeSettings& time = scenario.time;
   const double wanted = time.end;
-  if (wanted == from.end) {  // the very same steps
+  if (wanted == from.end) {  // unchanged end: the same steps as before
     time.step = from.step;
     return from.nominal < step::step_count(time);
   }

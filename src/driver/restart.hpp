@@ -8,27 +8,31 @@
 
 namespace trocar::driver {
 
-/// Reads where a run goes on from. One that goes on in a folder has that for its results. Failure
-/// (64) where a branch would write into the folder that it begins with.
+/// Reads -restart and -restart_from. With -restart, `output_folder` becomes the folder of the
+/// checkpoint. Failure (64) when -output_dir names another one, or when a branch would write into
+/// the folder of its checkpoint.
 RestartSettings read_restart_settings(core::Options& options, std::string& output_folder);
 
-/// Options as they were used, with what was in the files that they name. For one rank alone.
+/// The options as the run used them, with the FNV-1a of the contents of every file that they name.
+/// Call on one rank only.
 std::vector<io::Checkpoint::Option> options_with_hashes(
     const std::vector<core::ResolvedOption>& resolved);
 
-/// The checkpoint that a scenario goes on from, complete on rank 0; its time and ledger on every
-/// rank. Failure (65) where it cannot be read, (64) where an option differs that may not: what a
-/// run goes on with is the same mesh, the same materials and the same needles. A branch may move
-/// these otherwise. Collective.
+/// Reads the checkpoint from which a scenario continues. It is complete on rank 0; other ranks have
+/// its time and ledger only. Failure (65) when it cannot be read, (64) when an option differs that
+/// must not: mesh, materials, loads, needles and steps stay the same. A branch may move the needles
+/// differently. Collective.
 io::Checkpoint read_restart(const Scenario& scenario,
                             const std::vector<core::ResolvedOption>& resolved,
                             const base::Comm& comm);
 
-/// Keeps the checkpoint's step length: a new end is met by the first step at or after it. False
-/// when no step is left.
+/// Sets the steps of a run that continues. The step length stays that of the checkpoint, so the run
+/// ends with the first step at or after a new -time_end. Failure (64) when the new end lies before
+/// the checkpoint. False when no step is left.
 bool continue_time(const io::Checkpoint::Time& from, Scenario& scenario);
 
-/// A branch may move needles otherwise, but from where they are: Failure (64).
+/// Throws Failure (64) when the base of a needle would jump at the checkpoint. A branch may change
+/// how needles move, but only from where they are.
 void refuse_jumps(const std::vector<needle::NeedleSettings>& needles, const step::State& state);
 
 }  // namespace trocar::driver

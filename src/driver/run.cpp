@@ -20,11 +20,12 @@
 namespace trocar::driver {
 namespace {
 
-/// Hands what a run tells to results, log and checkpoints.
+/// Passes the events of a run to results, log and checkpoints.
 class RunObserver final : public step::Observer
 {
  public:
-  /// Borrows all. Fields are written every so many steps, and with the last one.
+  /// Borrows all arguments. Fields are written every -output_every steps and after the last step;
+  /// in a P-V sweep at every point.
   RunObserver(const Scenario& scenario, Recorder& recorder, Log& log, Checkpoints& checkpoints)
       : recorder_(recorder),
         log_(log),
@@ -58,14 +59,16 @@ class RunObserver final : public step::Observer
   long every_, steps_;
 };
 
-/// How far an earlier run had come.
+/// State and progress of an earlier run at its checkpoint.
 struct Reached
 {
   step::State state;
   step::Progress at;
 };
 
-/// That of a checkpoint, and a model that knows nothing but that. Collective.
+/// Restores state and progress from a checkpoint. The model forgets all else: its caches are
+/// dropped, and its ledger becomes that of the checkpoint. Failure (65) when the checkpoint is of
+/// another scene, (64) when a needle would jump. Collective.
 Reached resume(step::Model& model, const Scenario& scenario, const io::Checkpoint& from)
 {
   Reached place;
@@ -93,7 +96,7 @@ Reached resume(step::Model& model, const Scenario& scenario, const io::Checkpoin
   return place;
 }
 
-/// What a run is made with. Borrows all.
+/// Objects that a run needs. Borrows all.
 struct RunParts
 {
   step::Model& model;
@@ -103,7 +106,8 @@ struct RunParts
   const core::Stopwatch& since_start;
 };
 
-/// Every step or point of a scenario; gives the last state. Collective.
+/// Takes all steps, or sweeps all points of a P-V curve, and returns the last state. `place`: where
+/// an earlier run stopped; empty: begin at the start. Collective.
 step::State run_to_end(const RunParts& with, Checkpoints& checkpoints, std::optional<Reached> place)
 {
   if (with.scenario.output.locking_gauge) report_locking(with.model, with.recorder, with.log);
@@ -117,7 +121,7 @@ step::State run_to_end(const RunParts& with, Checkpoints& checkpoints, std::opti
   return std::move(sweep.end);
 }
 
-/// From where it begins to the results' last word. Collective.
+/// Runs to the end, writes the final reports and closes the results. Collective.
 core::ExitCode run_and_report(const RunParts& with, std::optional<Reached> place)
 {
   Checkpoints checkpoints(with.model, with.scenario, with.recorder, with.since_start);
@@ -144,7 +148,8 @@ void begin_log(const Log& log, const Invocation& invocation, const Scenario& sce
     log.note("note: the checkpoint was written by " + from->version);
 }
 
-/// The checkpoint is that of the end. A branch would be an empty folder.
+/// Result of a restart whose checkpoint is at the end already. For a branch this is a Failure (64),
+/// because its folder would stay empty.
 core::ExitCode nothing_left(const Scenario& scenario, const io::Checkpoint& from,
                             const base::Comm& comm)
 {

@@ -5,8 +5,8 @@
 
 namespace trocar::driver {
 
-/// Runs what the arguments say: 0, or 75 when it ended at a checkpoint. Failure when it could not.
-/// Collective.
+/// Runs the scene that the arguments describe. Returns 0, or 75 when the run ended early with a
+/// checkpoint. Throws Failure when it cannot go on. Collective.
 core::ExitCode run_scene(int argc, char** argv, const base::Comm& comm);
 
 }  // namespace trocar::driver

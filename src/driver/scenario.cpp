@@ -47,11 +47,12 @@ std::vector<tissue::Material> read_materials(Options& options, const mesh::Mesh&
   return materials;
 }
 
-/// Above this Poisson's ratio quadratic tets share their dilatation unless told otherwise: below
-/// they lose little by locking, and sharing costs a wider matrix (docs/studies.md).
+/// With -tissue_element auto, quadratic tets share their dilatation above this Poisson's ratio.
+/// Below it they lock only a little, and sharing would make the matrix wider (docs/studies.md).
 constexpr double shared_from = 0.49;
 
-/// Gives the mesh the order of the elements asked for; returns how these take their dilatation.
+/// Makes the mesh linear or quadratic, as `element` says, and returns how the elements compute
+/// their dilatation.
 tissue::Dilatation shape_elements(std::string element,
                                   const std::vector<tissue::Material>& materials, mesh::Mesh& mesh)
 {
@@ -126,7 +127,7 @@ insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& 
         options.given_for(puncture, surface.name) ? options.real(puncture, surface.name) : -1.0);
   settings.tip.radius = options.real("insertion_tip_radius");
   settings.tip.friction = options.real("insertion_tip_friction");
-  // Below this slip is round-off of the tissue's equilibrium, however well the laws are met.
+  // A smaller slip is only round-off of the tissue's equilibrium, however exactly the laws are met.
   constexpr double least_slip = 1e-9;  // [m]
   settings.stick_tolerance = std::max(options.real("constraint_tolerance"), least_slip);
   return settings;
@@ -148,7 +149,8 @@ law::Settings read_laws(Options& options)
   return laws;
 }
 
-/// METHOD[:NORM[:TOLERANCE]]; what is left out is as for the solver of the run.
+/// Reads METHOD[:NORM[:TOLERANCE]] of -constraint_compare. Omitted parts are taken from the solver
+/// of the run. Failure (64).
 law::BenchmarkCase read_contender(const std::string& entry, const law::Settings& laws)
 {
   const std::vector<std::string> words = core::split(entry, ':');
@@ -189,7 +191,7 @@ OutputSettings read_output(Options& options)
   output.every = options.integer("output_every");
   output.quiet = options.flag("quiet");
   output.error_target = options.real("error_target");
-  constexpr double least_target = 1e-6;  // nearer to round-off the estimate means nothing
+  constexpr double least_target = 1e-6;  // a smaller error would be lost in round-off
   if (output.error_target > 0.0 && output.error_target < least_target)
     throw core::option_error("option -error_target: " + core::shown(output.error_target) +
                              " is below 1e-6, which no estimate can tell");
@@ -218,7 +220,8 @@ OutputSettings read_output(Options& options)
   return output;
 }
 
-/// The needles, and the nodes they are planned to reach, when a factor can put these last.
+/// Reads the needles. A supernodal factor also gets the nodes on and around their planned paths,
+/// which it eliminates last.
 void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
 {
   const int layers = options.integer("compliance_tube");

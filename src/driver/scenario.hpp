@@ -20,37 +20,37 @@ struct OutputSettings
   bool velocity = false;
   post::StressOutput stress;
   bool error_estimate = false;
-  double error_target = 0.0;  ///< of the energy norm, 0: none
+  double error_target = 0.0;  ///< target of the error relative to the energy norm; 0: none
   std::string size_field;     ///< file for the sizes of the next mesh; empty: none
   bool locking_gauge = false;
   bool quiet = false;
 };
 
-/// When checkpoints are made, and what a run may take.
+/// When checkpoints are written, and how long a run may take.
 struct CheckpointSettings
 {
-  int every = 0;         ///< steps, 0: never
-  double seconds = 0.0;  ///< wall time between two [s], 0: never
-  double wall = 0.0;     ///< wall time after which the run ends with one [s], 0: never
+  int every = 0;         ///< steps from one checkpoint to the next; 0: no such checkpoints
+  double seconds = 0.0;  ///< wall time from one checkpoint to the next [s]; 0: no such checkpoints
+  double wall = 0.0;  ///< wall time after which the run writes a checkpoint and ends [s]; 0: none
 };
 
-/// The checkpoint a run goes on from.
+/// The checkpoint from which a run continues.
 struct RestartSettings
 {
-  std::string folder;   ///< with the checkpoint; empty: the run begins at the start
+  std::string folder;   ///< folder of the checkpoint; empty: the run begins at the start
   bool branch = false;  ///< the results go to another folder
 };
 
-/// Everything a run is told: a scene, and what is to be done with it. Made once from the options;
-/// nothing reads an option later.
+/// All input of a run: a scene, and what to compute and write. Made once from the options; no
+/// option is read later.
 struct Scenario : step::Scene
 {
-  std::optional<post::PvSettings> pv{};  ///< instead of a run through time
+  std::optional<post::PvSettings> pv{};  ///< if set, a P-V sweep replaces the run through time
   OutputSettings output{};
   CheckpointSettings checkpoint{};
   RestartSettings restart{};
   bool check_only = false;
-  std::vector<std::string> warnings{};  ///< for the log
+  std::vector<std::string> warnings{};  ///< lines for the log
 };
 
 /// Reads and checks all options and the files they name. Throws Failure (64 or 65) on every rank.

@@ -17,7 +17,7 @@ void refuse_dashpots_without_time(const Scenario& scenario)
           "-time_end for a quasi-static path");
 }
 
-/// What is asked for and could not do anything.
+/// Throws Failure (64) for options that have no effect in this scene.
 void refuse_idle(const Scenario& scenario)
 {
   const auto refuse = [](bool idle, const std::string& why) {
@@ -46,7 +46,8 @@ void refuse_idle(const Scenario& scenario)
          "insertion_radius_correction: the eta law has a compliance of its own (-insertion_eta)");
 }
 
-/// Places closer than anyone could want would only fill the memory with rows.
+/// Throws Failure (64) for a spacing that puts more than 1e5 coupling points on a needle. Their
+/// rows would only fill the memory.
 void refuse_crowded(const Scenario& scenario)
 {
   constexpr double most_points = 1e5;

@@ -4,8 +4,8 @@
 
 namespace trocar::driver {
 
-/// Refuses settings that are fine each and make no sense together, Failure (64); adds warnings
-/// about those that are doubtful. Not collective.
+/// Throws Failure (64) for settings that are valid alone but not together. Adds warnings about
+/// doubtful settings. Not collective.
 void check_scenario(Scenario& scenario);
 
 }  // namespace trocar::driver

@@ -13,14 +13,15 @@
 namespace trocar::driver {
 namespace {
 
-// What a signal handler may look at. Of two texts one is complete while the other is written.
+// Data that signal handlers read. One of the two texts is complete while the other is written.
 volatile std::sig_atomic_t this_rank_speaks = 0, wished = 0;
-volatile std::sig_atomic_t checkpoint_text = 0;  // 1 or 2; 0: no checkpoint stands
+// Number of the complete text, 1 or 2; 0: there is no checkpoint.
+volatile std::sig_atomic_t checkpoint_text = 0;
 std::array<std::array<char, 1024>, 2> texts{};
 
 void say(const char* text)
 {
-  // A signal handler may do no more about a failing write than go on.
+  // A signal handler can do nothing about a failed write.
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
@@ -58,12 +59,12 @@ void handle_signals(bool speaks)
 {
   this_rank_speaks = speaks ? 1 : 0;
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);                // a file that may grow no more fails the write: 74
-  for (int signal : {SIGHUP, SIGINT, SIGTERM})  // what nohup has ignored stays so
+  std::signal(SIGXFSZ, SIG_IGN);                // beyond the file size limit a write fails: 74
+  for (int signal : {SIGHUP, SIGINT, SIGTERM})  // a signal that nohup ignores stays ignored
     if (std::signal(signal, end_with) == SIG_IGN) std::signal(signal, SIG_IGN);
   struct sigaction action = {};
   action.sa_handler = wish;
-  action.sa_flags = SA_RESTART;  // no call that waits notices
+  action.sa_flags = SA_RESTART;  // interrupted system calls go on
   ::sigaction(SIGUSR1, &action, nullptr);
 }
 
@@ -83,7 +84,7 @@ void checkpoint_stands_at(double t, const std::string& folder)
   std::snprintf(text.data(), text.size(),
                 "a checkpoint of t = %.6g s stands: -restart %s goes on from it", t,
                 folder.c_str());
-  std::atomic_signal_fence(std::memory_order_release);  // the text before its number
+  std::atomic_signal_fence(std::memory_order_release);  // write the text before its number
   checkpoint_text = free;
 }
 

@@ -4,24 +4,26 @@
 
 namespace trocar::driver {
 
-/// Seconds for which ranks wait for one that does not run.
+/// How long ranks wait for a rank that does not run [s].
 inline constexpr int most_silence = 20;
 
-/// From here on a closed terminal or pipe does not end the run (SIGPIPE). SIGHUP, SIGINT and
-/// SIGTERM end it at once: with 75 when a checkpoint stands, else with 128 + their number;
-/// everything written so far is whole at any moment. SIGUSR1 is a wish (see
-/// `end_wished`). `speaks`: with one line, for one rank of all.
+/// Installs the signal handlers. A write to a closed pipe or terminal no longer ends the run
+/// (SIGPIPE is ignored). SIGHUP, SIGINT and SIGTERM end it at once, with exit code 75 when there is
+/// a checkpoint, else with 128 + their number. Files need no clean-up, because they are complete at
+/// any moment. SIGUSR1 asks for an early end, see `end_wished`. `speaks`: this rank prints the line
+/// on the end; true on one rank only.
 void handle_signals(bool speaks);
 
-/// From here on the folder has a checkpoint of time t [s]; the line that a signal ends the run with
-/// says so.
+/// Tells the signal handlers that the folder has a checkpoint of time t [s]. The line that they
+/// print then names it.
 void checkpoint_stands_at(double t, const std::string& folder);
 
-/// Another rank no longer runs: this one ends at once, with 75 when a checkpoint stands, else
-/// with 1.
+/// Ends this rank at once, because the rank `rank` no longer runs: with exit code 75 when there is
+/// a checkpoint, else with 1.
 [[noreturn]] void end_for_silence(int rank, bool speaks);
 
-/// SIGUSR1 came to this rank: the run is to end with a checkpoint after the step.
+/// True after this rank received SIGUSR1: the run is to end with a checkpoint after the present
+/// step.
 bool end_wished();
 
 }  // namespace trocar::driver

@@ -8,8 +8,8 @@
 namespace trocar::driver {
 namespace {
 
-/// Of equal steps to the end: h itself when it goes into T whole, to a millionth of it, else the
-/// longest that is not above it.
+/// Length of equal steps up to T [s]: h when T/h is a whole number to 1e-6, else the longest length
+/// below h that divides T.
 double equal_steps(double h, double T)
 {
   constexpr double whole = 1e-6;
@@ -18,7 +18,7 @@ double equal_steps(double h, double T)
   return T / std::ceil(ratio);
 }
 
-/// 0 for auto.
+/// Reads -time_newton_max; returns 0 for auto.
 int read_newton(core::Options& options)
 {
   const std::string text = options.text("time_newton_max");
@@ -34,7 +34,8 @@ int read_newton(core::Options& options)
 
 }  // namespace
 
-/// A run without a step, or with more than anyone could want, is a slip of the pen.
+/// Throws Failure (64) for a run that ends within its first step or takes more than 1e9 steps: both
+/// are taken for typing errors.
 static void check_steps(const step::TimeSettings& time)
 {
   constexpr double most_steps = 1e9, within = 1.0 - 1e-6;

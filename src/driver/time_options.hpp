@@ -5,7 +5,8 @@
 
 namespace trocar::driver {
 
-/// Kind of analysis, steps, and how often each is linearised. Throws Failure (64).
+/// Reads the kind of analysis, the steps and the limits on linearisations per step. Throws Failure
+/// (64).
 step::TimeSettings read_time(core::Options& options);
 
 }  // namespace trocar::driver

@@ -17,12 +17,12 @@ constexpr const char* manifest_name = "checkpoint.txt";
 constexpr const char* turns[] = {"checkpoint_a.h5", "checkpoint_b.h5"};
 constexpr const char* format = "trocar-checkpoint-1";
 
-/// Which file is the good one.
+/// Contents of checkpoint.txt: which of the two files is the last complete checkpoint.
 struct Manifest
 {
   std::string file;
   std::uint64_t bytes = 0;
-  std::string sum;  ///< FNV-1a of the file
+  std::string sum;  ///< FNV-1a of the bytes of `file`
 };
 
 std::string text_of(const Manifest& manifest, const Checkpoint::Time& time)
@@ -48,7 +48,8 @@ std::string contents(const std::string& path)
   return text.str();
 }
 
-/// The whole of it must add up before a word of it is believed.
+/// Reads checkpoint.txt. Failure (65) unless its own checksum, its format and the file name in it
+/// are right.
 Manifest manifest_of(const std::string& path)
 {
   const std::string text = contents(path);
@@ -84,7 +85,7 @@ std::vector<std::string> split(const std::string& text)
   return lines;
 }
 
-/// One frame as a line of words between tabs, which no name has.
+/// One frame as a line of words separated by tabs. No name contains a tab.
 std::string line_of(const XdmfFrame& frame)
 {
   std::ostringstream text;
@@ -238,7 +239,8 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint)
 
 namespace {
 
-/// The bytes of the file that a list names, when they add up.
+/// The bytes of the file that checkpoint.txt (`list`) names. Failure (65) when size or checksum
+/// differ from those in the manifest.
 std::string good_bytes(const std::string& list, const Manifest& manifest, const std::string& path)
 {
   std::string bytes = contents(path);
@@ -262,7 +264,7 @@ Checkpoint read_checkpoint(const std::string& folder)
   std::string bytes;
   try {
     bytes = good_bytes(list, manifest, path());
-  } catch (const core::Failure&) {  // a run that goes on may have replaced both in between
+  } catch (const core::Failure&) {  // another run may have written a new checkpoint meanwhile
     const std::string before = manifest.sum;
     manifest = manifest_of(list);
     if (manifest.sum == before) throw;
@@ -270,7 +272,7 @@ Checkpoint read_checkpoint(const std::string& folder)
   }
   try {
     return checkpoint_of(base::H5File::of_bytes(path(), std::move(bytes)));
-  } catch (const std::exception& error) {  // what adds up but is not what we write
+  } catch (const std::exception& error) {  // the checksum is right, the contents are not
     throw damaged(path(), std::string("is no checkpoint of this program (") + error.what() + ")");
   }
 }

@@ -10,58 +10,62 @@
 
 namespace trocar::io {
 
-/// All that a run needs to go on from the end of a step as if it had never stopped.
+/// Everything that a run needs to continue from the end of a step as if it had never stopped.
 struct Checkpoint
 {
-  /// An option as it was used; of a file what was in it as well.
+  /// An option as the run used it. `hash`: FNV-1a of the contents when the value names a file, else
+  /// empty.
   struct Option
   {
     std::string name, value, hash;
   };
-  /// How the run counts its steps.
+  /// Time and step counts of the run.
   struct Time
   {
-    double now = 0.0;        ///< [s]
-    double step = 0.0;       ///< h [s]
-    double asked = 0.0;      ///< h as it was asked for [s]
-    double end = 0.0;        ///< [s]
-    long long nominal = 0;   ///< steps of full length that are done
-    long long accepted = 0;  ///< steps that are done, parts of halved ones each for itself
+    double now = 0.0;        ///< time of the state [s]
+    double step = 0.0;       ///< step length h [s]
+    double asked = 0.0;      ///< h that was asked for; `step` may be shorter [s]
+    double end = 0.0;        ///< end of the run [s]
+    long long nominal = 0;   ///< completed steps of full length
+    long long accepted = 0;  ///< accepted steps; each part of a halved step counts
   };
 
-  /// run.h5 as it was then: what of it stays as it is adds up to `sum`. What does not are the
-  /// places below and rows that come later.
+  /// run.h5 at the time of the checkpoint. `sum` is the FNV-1a of its bytes, with zeros in place of
+  /// what changes later: row counts, ledger counts and the room for later rows.
   struct RunFile
   {
-    long long bytes = 0;  ///< its length
-    long long rows = 0;   ///< of the histories
-    long long room = 0;   ///< rows that they have room for
-    std::string id;       ///< of the run that made it
+    long long bytes = 0;  ///< size of the file [B]
+    long long rows = 0;   ///< rows in each history
+    long long room = 0;   ///< rows for which the histories have room
+    std::string id;       ///< run id of the run that made the file
     std::string sum;
-    std::vector<long long> series;  ///< data, row count [B] and columns of each history
-    std::vector<long long> ledger;  ///< of each count [B]
+    /// Per history: offset of the data [B], offset of the row count [B], columns.
+    std::vector<long long> series;
+    std::vector<long long> ledger;  ///< offset of each ledger count [B]
   };
 
-  std::string version;  ///< of the program that wrote it
+  std::string version;  ///< of the program that wrote the checkpoint
   std::vector<Option> options;
   Time time;
   RunFile run;
   std::vector<std::pair<std::string, long long>> ledger;
-  std::vector<XdmfFrame> frames;  ///< that run.xdmf shows
+  std::vector<XdmfFrame> frames;  ///< frames of run.xdmf
   core::Archive state;
 };
 
-/// Names of what belongs to checkpoints in a result folder.
+/// True when `name` is checkpoint.txt or one of the two checkpoint files.
 bool names_checkpoint(const std::string& name);
 
-/// Puts a checkpoint into a result folder. There are two files in turn, each written under another
-/// name, synced and renamed; `checkpoint.txt` is put in place last and names the good one, its
-/// length and its sum. Whatever the moment a run is killed, the last one that was finished stands.
-/// Failure (74), and the one before stands. For one rank alone.
+/// Writes a checkpoint into a result folder. Two files are used in turn; each is written under a
+/// temporary name, synced and renamed. `checkpoint.txt` is replaced last and names the complete
+/// file, its size and its checksum. So the last complete checkpoint survives a kill at any moment.
+/// Throws Failure (74); the previous checkpoint then remains. Failure (65) when the present
+/// checkpoint.txt is damaged. Call on one rank only.
 void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint);
 
-/// The last one that was finished in a folder. Failure (65) with the file and what is wrong where
-/// there is none, where it is damaged, or another program's. For one rank alone.
+/// Reads the last complete checkpoint of a folder. Failure (65), with the file and the reason, when
+/// there is none, when it is damaged or when its format is not that of this program. Call on one
+/// rank only.
 Checkpoint read_checkpoint(const std::string& folder);
 
 }  // namespace trocar::io

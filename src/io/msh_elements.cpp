@@ -4,8 +4,8 @@
 #include <array>
 #include <limits>
 
-// Elements of a Gmsh file. In version 2.2 each names its physical group and its entity; in 4.1 they
-// come by entity, and these name their groups.
+// Reads $Elements of a Gmsh file. In MSH 2.2 each element lists its physical group and its entity.
+// In MSH 4.1 elements are listed by entity, and $Entities lists the groups of each entity.
 namespace trocar::io {
 namespace {
 
@@ -35,13 +35,14 @@ void count_loose(int type, std::int64_t elements, MshReading& reading)
   if (type == tet_4 || type == tet_10) reading.mesh.loose_tets += elements;
 }
 
-/// Blocks of a file of version 2.2, made as their elements come.
+/// Collects the elements of an MSH 2.2 file in blocks while they are read.
 class Blocks
 {
  public:
   explicit Blocks(MshFile& mesh) : mesh_(&mesh) {}
 
-  /// That of elements of a type in a physical group (one at most) on an entity.
+  /// The block for elements of this type, physical group and entity; made at its first use. An MSH
+  /// 2.2 element is in one group at most.
   MshFile::Block& of(int type, int dim, int group, int entity)
   {
     const std::array<int, 3> key{type, group, entity};
@@ -60,7 +61,7 @@ class Blocks
   const std::size_t* last_ = nullptr;
 };
 
-/// What stands before the nodes of an element of version 2.2.
+/// Data before the node list of an MSH 2.2 element.
 struct Head
 {
   int type, tags;
@@ -73,7 +74,7 @@ void read_element_2(MshInput& in, const Head& head, Blocks& blocks, MshReading& 
   const MshType of = msh_type(in, head.type);
   if (head.tags < 0 || head.tags > most_tags)
     throw in.failure("element " + number(head.element) + " has " + number(head.tags) + " tags");
-  std::array<int, 3> tags{};  // physical group, entity, partitions
+  std::array<int, 3> tags{};  // physical group, entity, number of partitions
   for (int k = 0; k < head.tags; ++k) {
     const int tag = in.integer();
     if (k < 3) tags[static_cast<std::size_t>(k)] = tag;
@@ -100,7 +101,7 @@ void read_elements_2(MshInput& in, MshReading& reading)
   if (binary) in.begin_bytes();
   Blocks blocks(reading.mesh);
   Head head{};
-  std::int64_t more = 0;  // elements of a binary block, which have one head
+  std::int64_t more = 0;  // elements left in a binary block; they share one head
   for (std::int64_t i = 0; i < elements; ++i) {
     if (binary && more == 0) {
       head.type = in.integer();
@@ -126,7 +127,7 @@ void read_elements_4(MshInput& in, MshReading& reading)
   const bool binary = reading.format.binary;
   const std::int64_t blocks = in.count(in.size(), 8);
   const std::int64_t elements = in.count(in.size(), binary ? 16 : 4);
-  in.size(), in.size();  // least and largest tag
+  in.size(), in.size();  // smallest and largest tag, not used
   std::int64_t read = 0;
   for (std::int64_t block = 0; block < blocks; ++block) {
     const int dim = dimension(in), entity = in.integer(), type = in.integer();

@@ -9,7 +9,7 @@
 namespace trocar::io {
 namespace {
 
-// Gmsh's element types 1, 2, ... (its manual, "MSH file format"): dimension and nodes.
+// Dimension and number of nodes of Gmsh's element types 1, 2, ... (Gmsh manual, "MSH file format").
 constexpr std::array<MshType, 31> types{
     {{1, 2},  {2, 3},  {2, 4},  {3, 4}, {3, 8}, {3, 6},  {3, 5},  {1, 3},  {2, 6}, {2, 9},  {3, 10},
      {3, 27}, {3, 18}, {3, 14}, {0, 1}, {2, 8}, {3, 20}, {3, 15}, {3, 13}, {2, 9}, {2, 10}, {2, 12},
@@ -35,7 +35,7 @@ void read_format(MshInput& in, MshFormat& format)
   }
 }
 
-/// Dimension, tag and name of groups, as text in all files.
+/// Reads $PhysicalNames: dimension, tag and name of each group. They are text even in binary files.
 void read_names(MshInput& in, std::map<std::pair<int, int>, std::string>& names)
 {
   const std::int64_t groups = in.count(in.size(), 6);
@@ -65,7 +65,7 @@ void refuse_section(const MshInput& in, const std::string& name)
     throw in.failure("MSH version 1: 2.2 and 4.1 are read (gmsh -save -format msh41 converts)");
 }
 
-/// Those with a name and those that elements are in.
+/// Lists the groups that have a name or contain elements.
 void list_groups(MshReading& reading)
 {
   for (const MshFile::Block& block : reading.mesh.blocks)
@@ -74,7 +74,8 @@ void list_groups(MshReading& reading)
     reading.mesh.groups.push_back({group.first, group.second, std::move(name)});
 }
 
-/// A section that may come once.
+/// Reads a section, or skips one that does not describe the mesh. Only a skipped section may occur
+/// twice.
 void read_section(MshInput& in, const std::string& name, MshReading& reading)
 {
   MshFile& mesh = reading.mesh;
@@ -102,7 +103,7 @@ void read_section(MshInput& in, const std::string& name, MshReading& reading)
 
 MshType msh_type(const MshInput& in, int type)
 {
-  if (type == 92) return {3, 64};  // hexahedra of third and fourth order
+  if (type == 92) return {3, 64};  // 92 and 93: hexahedra of third and fourth order
   if (type == 93) return {3, 125};
   if (type < 1 || type > static_cast<int>(types.size()))
     throw in.failure("Gmsh has no element type " + std::to_string(type));

@@ -6,17 +6,17 @@
 
 #include "io/msh_file.hpp"
 
-// What a Gmsh file has by physical group: for msh_mesh.cpp alone.
+// Contents of a Gmsh file by physical group. Only msh_mesh.cpp uses them.
 namespace trocar::io {
 
 inline constexpr const char* msh_kinds[] = {"point", "curve", "surface", "volume"};
 
-/// Physical groups of one name, and what is in them.
+/// All physical groups of one dimension and one name, with their elements.
 struct MshGroup
 {
   std::string name;
-  int tag;                                    ///< the least of them
-  std::vector<const MshFile::Block*> blocks;  ///< ascending by entity
+  int tag;                                    ///< smallest tag of the groups
+  std::vector<const MshFile::Block*> blocks;  ///< sorted by entity
 
   bool empty() const
   {
@@ -24,10 +24,11 @@ struct MshGroup
   }
 };
 
-/// Those of a dimension in the order of their tags; of one without a name kind and tag make it.
+/// The physical groups of a dimension in the order of their tags. A group without a name is called
+/// KIND_TAG, for example volume_3. Adds a remark when groups share a name.
 std::vector<MshGroup> msh_groups(const MshFile& file, int dim, std::vector<std::string>& remarks);
 
-/// The tets of the file, by place, so that they take little memory beside it and the mesh.
+/// References to the tets of a file. They need little memory beside the file's data and the mesh.
 struct MshTets
 {
   struct Place
@@ -35,7 +36,7 @@ struct MshTets
     int block, index;
   };
   std::vector<const MshFile::Block*> blocks;
-  std::vector<int> region;  ///< by block
+  std::vector<int> region;  ///< index of the volume, by block
   std::vector<Place> tets;
   std::size_t nodes_each;
 
@@ -43,7 +44,7 @@ struct MshTets
   {
     return blocks[static_cast<std::size_t>(at.block)]->tags[static_cast<std::size_t>(at.index)];
   }
-  const int* nodes(const Place& at) const  // in Gmsh's order
+  const int* nodes(const Place& at) const  // in Gmsh's node order
   {
     return &blocks[static_cast<std::size_t>(at.block)]
                 ->nodes[nodes_each * static_cast<std::size_t>(at.index)];
@@ -51,8 +52,8 @@ struct MshTets
   int region_of(const Place& at) const { return region[static_cast<std::size_t>(at.block)]; }
 };
 
-/// The tets of volumes by ascending tag, with so many nodes each. Failure (65) where a tag means
-/// two of them.
+/// The tets of the volumes in the order of their tags; `nodes_each`: nodes of a tet. Failure (65)
+/// when two tets share a tag or a tet is in two volumes.
 MshTets msh_tets(const MshFile& file, const std::vector<MshGroup>& volumes, std::size_t nodes_each);
 
 }  // namespace trocar::io

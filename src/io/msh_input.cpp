@@ -13,7 +13,7 @@ namespace trocar::io {
 namespace {
 
 constexpr std::size_t window_bytes = std::size_t{1} << 20;
-constexpr std::size_t longest_word = 256;  ///< [B], of a number or a section's name
+constexpr std::size_t longest_word = 256;  ///< limit for a number or the name of a section [B]
 
 bool blank(char c)
 {
@@ -80,7 +80,7 @@ bool MshInput::skip_blanks()
   }
 }
 
-/// The next word of a text; it stays until the next one is asked for.
+/// The next word, without moving behind it. The view is valid until the next read.
 std::string_view MshInput::field()
 {
   if (!skip_blanks()) throw failure("the file ends here");
@@ -105,7 +105,8 @@ Number MshInput::parsed(std::string_view text)
     throw failure("'" + core::printable(text) + "' is no " +
                   (std::is_integral_v<Number> ? "integer" : "number"));
   if constexpr (!std::is_integral_v<Number>)
-    if (large) value = std::strtod(std::string(text).c_str(), nullptr);  // 0 where it is tiny
+    // Out of range: strtod gives about 0 for underflow and inf for overflow.
+    if (large) value = std::strtod(std::string(text).c_str(), nullptr);
   if (large && (std::is_integral_v<Number> || std::isinf(static_cast<double>(value))))
     throw failure("'" + core::printable(text) + "' is too large");
   at_ += text.size();

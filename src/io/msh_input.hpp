@@ -12,43 +12,45 @@
 
 namespace trocar::io {
 
-/// A Gmsh file from front to back, through a window that moves: its fields are words, or after
-/// `begin_bytes` bytes of this machine's order. What is not as it must be is a Failure (65) that
-/// names the line, in binary parts the byte, and the section. For one rank alone.
+/// Reads a Gmsh file from front to back through a moving window. Fields are words, or, after
+/// `begin_bytes`, binary numbers in the byte order of this machine. Anything malformed is a Failure
+/// (65) that names the section and the line, or the byte in binary parts. Use on one rank only.
 class MshInput
 {
  public:
-  /// Failure (65) where there is no such file, or none that ends.
+  /// Throws Failure (65) when the file does not exist, is not a regular file or is empty.
   explicit MshInput(const std::string& file);
 
-  /// The next fields of the section are bytes; they begin on the next line.
+  /// The next fields of the section are binary. They begin on the next line.
   void begin_bytes();
   std::int32_t integer();
-  std::int64_t size();  ///< counts and tags of nodes and elements
-  double real();        ///< finite
+  std::int64_t size();  ///< 64-bit integer: counts, and tags of nodes and elements
+  double real();        ///< Failure (65) when the number is not finite
 
-  /// The next word as text, whatever the fields are; empty at the end of the file.
+  /// The next word as text, in binary parts too; empty at the end of the file.
   std::string word();
-  /// The rest of the line as text; its end is still to come.
+  /// The rest of the line as text. Stops before the newline.
   std::string line();
 
-  /// The next word is a section's name, "$Nodes": without the dollar; empty at the end.
+  /// Reads the head of a section, such as "$Nodes". Returns the name without the dollar; empty at
+  /// the end of the file.
   std::string begin_section();
-  /// The word that ends it must follow.
+  /// Reads the word that ends the section, such as "$EndNodes". Failure (65) for another word.
   void end_section();
-  /// Moves on behind the word that ends it.
+  /// Skips everything up to the word that ends the section, and this word.
   void skip_section();
 
-  /// A count of what takes at least so many bytes each: no larger than what is left can hold.
+  /// Returns `value`, the announced number of items of at least `bytes_each` bytes each. Failure
+  /// (65) when the rest of the file is too small for them.
   std::int64_t count(std::int64_t value, std::size_t bytes_each) const;
 
   core::Failure failure(const std::string& what) const;
-  std::string hash() const { return hash_.hex(); }  ///< FNV-1a of the bytes looked at
+  std::string hash() const { return hash_.hex(); }  ///< FNV-1a of the bytes read so far
 
  private:
   std::size_t ready() const { return static_cast<std::size_t>(end_ - at_); }
-  bool fill(std::size_t bytes);  ///< false: fewer are left
-  bool skip_blanks();            ///< false at the end
+  bool fill(std::size_t bytes);  ///< tries to have so many bytes ready; false when fewer are left
+  bool skip_blanks();            ///< false at the end of the file
   std::string_view field();
   template <class Number>
   Number parsed(std::string_view text);
@@ -65,7 +67,7 @@ class MshInput
   const char* at_ = nullptr;
   const char* end_ = nullptr;
   core::Fnv1a hash_{};
-  std::uint64_t bytes_ = 0, taken_ = 0;  ///< bytes of the file, and in earlier windows
+  std::uint64_t bytes_ = 0, taken_ = 0;  ///< size of the file; bytes before the window
   long long line_ = 1;
   bool binary_ = false;
   std::string section_;

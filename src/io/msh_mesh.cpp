@@ -9,17 +9,18 @@
 namespace trocar::io {
 namespace {
 
-// Gmsh's types of simplices, and which nodes in its order are ours.
+// Gmsh's type numbers of simplices, and the position of our middle nodes (edges `mesh::tet_edges`)
+// in Gmsh's node order of a tet.
 constexpr int point_type = 15;
 struct Order
 {
-  std::array<int, 4> type;           ///< by dimension
-  std::array<std::size_t, 4> nodes;  ///< likewise
+  std::array<int, 4> type;           ///< type number, by dimension
+  std::array<std::size_t, 4> nodes;  ///< nodes per element, by dimension
 };
 constexpr Order linear{{point_type, 1, 2, 4}, {1, 2, 3, 4}};
 constexpr Order quadratic{{point_type, 8, 9, 11}, {1, 3, 6, 10}};
 constexpr std::array<std::size_t, 6> middles_in_gmsh{4, 5, 6, 7, 9, 8};
-/// Builds a mesh; each part needs those before it.
+/// Builds a mesh. Each step of the constructor needs the results of the steps before.
 class Assembly
 {
  public:
@@ -45,7 +46,7 @@ class Assembly
   const MshFile& file_;
   Order order_ = linear;
   mesh::Mesh mesh_;
-  std::vector<int> row_;  ///< of the file's nodes in the mesh, -1: on no tet
+  std::vector<int> row_;  ///< mesh node of each node of the file; -1: on no tet
 };
 
 Assembly::Assembly(const MshFile& file, double scale) : file_(file)
@@ -103,7 +104,7 @@ void Assembly::read_volumes(double scale)
                             " tetrahedra are in no physical volume: they are left out");
 }
 
-/// The nodes of the tets, by ascending tag.
+/// Numbers the nodes of the tets in the order of their tags.
 void Assembly::number_nodes(const MshTets& raw, double scale)
 {
   row_.assign(file_.node_tag.size(), -1);
@@ -128,7 +129,8 @@ void Assembly::number_nodes(const MshTets& raw, double scale)
   }
 }
 
-/// Triangles with a node on no tet are strays at once; others may turn out to be.
+/// Reads the surfaces. A triangle with a node on no tet is a stray; `mesh::judge` finds the other
+/// strays.
 void Assembly::read_surfaces()
 {
   for (const MshGroup& group : groups(2)) {
@@ -177,8 +179,8 @@ void Assembly::read_points()
   }
 }
 
-/// Curves are read as groups of points. One whose name a surface or a point has is left out: the
-/// name keeps its meaning.
+/// Reads curves as groups of points. Skips a curve that has the name of a surface or of a point
+/// group, so that this name keeps its meaning.
 void Assembly::read_curves()
 {
   const auto taken = [&](const std::string& name) {

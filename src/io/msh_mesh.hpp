@@ -5,10 +5,11 @@
 
 namespace trocar::io {
 
-/// The mesh of a file: its tets in physical volumes, the nodes of these, the groups by name, all
-/// in the order of their tags; coordinates times `scale` [m]. Groups of one name and dimension are
-/// one, what is listed twice counts once, and `remarks` says so. Failure (65) for elements we have
-/// not. For one rank alone.
+/// Makes the mesh of a file: the tets in physical volumes, their nodes, and the physical groups,
+/// each in the order of their tags. Coordinates are multiplied by `scale` [m]. Groups of one
+/// dimension and one name are merged, with a remark. Nodes that are listed twice in a group of
+/// points or curves count once. Failure (65) without tets, or when a group holds elements of
+/// another order than the tets or other shapes than simplices. Call on one rank only.
 mesh::Mesh mesh_of(const MshFile& file, double scale);
 
 }  // namespace trocar::io

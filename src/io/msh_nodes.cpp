@@ -4,8 +4,8 @@
 #include <array>
 #include <limits>
 
-// Entities and nodes of a Gmsh file. What the sections of MSH 4.1 hold is the same in ascii and
-// binary; the manual of Gmsh has it.
+// Reads $Entities and $Nodes of a Gmsh file. In MSH 4.1 both have the same fields in ascii and
+// binary (Gmsh manual, "MSH file format").
 namespace trocar::io {
 namespace {
 
@@ -14,7 +14,7 @@ std::string number(std::int64_t value)
   return std::to_string(value);
 }
 
-/// Bytes that a node takes at least, with three coordinates and its tag.
+/// Smallest size of a node: its tag and three coordinates [B].
 std::size_t least_of_node(const MshFormat& format)
 {
   if (!format.binary) return 8;
@@ -29,7 +29,7 @@ void reserve_nodes(MshInput& in, std::int64_t nodes, MshReading& reading)
   reading.mesh.x.reserve(3 * static_cast<std::size_t>(nodes));
 }
 
-/// Physical groups of one entity.
+/// Reads a list of tags: their number, then the tags.
 std::vector<int> tags_of(MshInput& in)
 {
   const std::int64_t tags = in.count(in.size(), 2);
@@ -38,7 +38,8 @@ std::vector<int> tags_of(MshInput& in)
   return all;
 }
 
-/// Groups turn the orientation of entities by a sign, which is nothing to us.
+/// The physical groups of an entity, sorted and without signs. A negative tag means reversed
+/// orientation, which is ignored here.
 std::vector<int> groups_in(std::vector<int> tags)
 {
   for (int& tag : tags)
@@ -100,9 +101,10 @@ void read_entities(MshInput& in, MshReading& reading)
   for (int dim = 0; dim < 4; ++dim)
     for (std::int64_t i = 0; i < counts[static_cast<std::size_t>(dim)]; ++i) {
       const int tag = in.integer();
-      for (int k = 0; k < (dim == 0 ? 3 : 6); ++k) in.real();  // a point, or a box around it
+      // Position of a point, else a bounding box; not used.
+      for (int k = 0; k < (dim == 0 ? 3 : 6); ++k) in.real();
       std::vector<int> groups = groups_in(tags_of(in));
-      if (dim > 0) tags_of(in);  // its boundary
+      if (dim > 0) tags_of(in);  // entities on its boundary, not used
       if (!reading.groups_of.emplace(std::pair(dim, tag), std::move(groups)).second)
         throw in.failure("entity " + number(tag) + " of dimension " + number(dim) +
                          " is there twice");
@@ -125,12 +127,12 @@ void read_nodes_4(MshInput& in, MshReading& reading)
   if (reading.format.binary) in.begin_bytes();
   const std::int64_t blocks = in.count(in.size(), 8);
   const std::int64_t nodes = in.count(in.size(), least_of_node(reading.format));
-  in.size(), in.size();  // least and largest tag
+  in.size(), in.size();  // smallest and largest tag, not used
   reserve_nodes(in, nodes, reading);
   std::int64_t read = 0;
   for (std::int64_t block = 0; block < blocks; ++block) {
     const int dim = dimension(in);
-    in.integer();  // its entity
+    in.integer();  // tag of the entity, not used
     const int parametric = in.integer();
     if (parametric != 0 && parametric != 1)
       throw in.failure("a block of nodes is parametric " + number(parametric) + ": 0 or 1 is due");

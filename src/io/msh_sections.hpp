@@ -9,7 +9,7 @@
 #include "io/msh_file.hpp"
 #include "io/msh_input.hpp"
 
-// The sections of a Gmsh file: for msh_file.cpp alone.
+// Readers of the sections of a Gmsh file. Only read_msh uses them.
 namespace trocar::io {
 
 inline constexpr const char* partitioned =
@@ -17,27 +17,27 @@ inline constexpr const char* partitioned =
 
 struct MshFormat
 {
-  bool four = false;  ///< 4.1, else 2.2
+  bool four = false;  ///< MSH 4.1; false: MSH 2.2
   bool binary = false;
 };
 
-/// Dimension and nodes of an element type.
+/// Dimension and number of nodes of an element type.
 struct MshType
 {
   int dim, nodes;
 };
-/// Failure (65) for a number that is no type.
+/// Dimension and nodes of Gmsh's type number `type`. Failure (65) when Gmsh has no such type.
 MshType msh_type(const MshInput& in, int type);
 
-/// Row of a node by its tag. Tags that lie close together are looked up in a table, others by
-/// bisection: its size is bounded by the number of nodes, not by their tags.
+/// Finds the index of a node by its tag. Dense tags are looked up in a table, others by bisection
+/// in a sorted list. So the memory is bounded by the number of nodes, whatever the tags are.
 class NodeIndex
 {
  public:
   NodeIndex() = default;
-  /// Failure (65) for tags that are not positive, or twice there.
+  /// Throws Failure (65) when a tag is not positive or occurs twice.
   NodeIndex(const MshInput& in, const std::vector<std::int64_t>& tags);
-  int row(std::int64_t tag) const;  ///< -1: there is none
+  int row(std::int64_t tag) const;  ///< index in the list of tags; -1: no such node
 
  private:
   std::int64_t first_ = 0;
@@ -45,18 +45,19 @@ class NodeIndex
   std::vector<std::pair<std::int64_t, int>> sorted_;
 };
 
-/// A file half read.
+/// Data collected while a file is being read.
 struct MshReading
 {
   MshFormat format;
-  std::set<std::string> seen;                                 ///< sections
-  std::map<std::pair<int, int>, std::vector<int>> groups_of;  ///< by dimension and entity
-  std::map<std::pair<int, int>, std::string> names;           ///< by dimension and group
+  std::set<std::string> seen;  ///< sections read so far
+  /// Physical groups; key: dimension, entity.
+  std::map<std::pair<int, int>, std::vector<int>> groups_of;
+  std::map<std::pair<int, int>, std::string> names;  ///< names of groups; key: dimension, tag
   NodeIndex index;
   MshFile mesh;
 };
 
-/// The dimension of an entity.
+/// Reads the dimension of an entity. Failure (65) unless it is 0 to 3.
 int dimension(MshInput& in);
 void read_entities(MshInput& in, MshReading& reading);
 void read_nodes_2(MshInput& in, MshReading& reading);

@@ -27,14 +27,14 @@ std::string host()
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-/// What is at a path itself, not behind a link there.
+/// Type of the file at a path. Links are not followed.
 fs::file_type type_of(const std::string& path)
 {
   std::error_code ignored;
   return fs::symlink_status(path, ignored).type();
 }
 
-/// The number in step_NNNNNN.h5, with six digits or more; -1: another name.
+/// The step number in a name step_NNNNNN.h5 of six digits or more; -1 for other names.
 long long step_of(const std::string& name)
 {
   const std::string begin = "step_", end = ".h5";
@@ -53,7 +53,7 @@ bool names_temporary(const std::string& name)
          name.size() == std::strlen(base::temporary_prefix) + 6;
 }
 
-/// Removes regular files of a folder whose names say they are ours.
+/// Removes the regular files of a folder whose names pass the test `ours`. Failure (74).
 template <class Ours>
 void remove_ours(const std::string& folder, const Ours& ours)
 {
@@ -70,7 +70,7 @@ base::Descriptor opened(const std::string& lock)
   return {lock, O_RDWR | O_CREAT};
 }
 
-/// The file is still the one of that name.
+/// True while the path still leads to this open file.
 bool is_at(const base::Descriptor& file, const std::string& path)
 {
   using Status = struct stat;
@@ -102,8 +102,9 @@ OutputFolder::Lock::~Lock()
   if (file.number() >= 0 && is_at(file, path)) ::unlink(path.c_str());
 }
 
-/// The kernel's lock on the file ends with the process that has it; what the file says is for
-/// people, and tells a run on another host, whose locks may not be seen here.
+/// Locks run.lock with flock(2). The kernel releases this lock when the process ends. The text in
+/// the file is for people. Its host name also reveals a run on another host, whose kernel lock may
+/// be invisible here.
 void OutputFolder::lock()
 {
   const std::string file = path_ + "/run.lock";
@@ -111,7 +112,7 @@ void OutputFolder::lock()
     throw core::output_error(file + " is no file of ours");
   base::Descriptor mine = opened(file);
   bool have = ::flock(mine.number(), LOCK_EX | LOCK_NB) == 0;
-  while (have && !is_at(mine, file)) {  // its last owner removed it in between
+  while (have && !is_at(mine, file)) {  // the last owner removed the file after it was opened here
     mine = opened(file);
     have = ::flock(mine.number(), LOCK_EX | LOCK_NB) == 0;
   }
@@ -135,7 +136,7 @@ void OutputFolder::lock()
   lock_.file = std::move(mine);
 }
 
-/// Names that the results will have must be free, or those of results.
+/// Throws Failure (74) when something else than a result of this program has the name of a result.
 void OutputFolder::refuse_strangers() const
 {
   const auto must_be = [&](const std::string& name, fs::file_type type) {
@@ -166,11 +167,11 @@ void OutputFolder::refuse_strangers() const
 
 void OutputFolder::clear() const
 {
-  // First what says that a checkpoint stands: the histories it belongs to are gone.
+  // checkpoint.txt goes first: the run.h5 that its checkpoint needs has been replaced already.
   remove_ours(path_, [](const std::string& name) { return name == "checkpoint.txt"; });
   clear_after(-1);
   remove_ours(path_, [](const std::string& name) {
-    return names_checkpoint(name) || name == "run.xdmf";  // it shows files that go now
+    return names_checkpoint(name) || name == "run.xdmf";  // the field files that it shows are gone
   });
 }
 

@@ -6,32 +6,33 @@
 
 namespace trocar::io {
 
-/// A folder for the results of one run at a time. While the object lives, a file `run.lock` with
-/// host, process and start time keeps others out; one that a dead process of this host left behind
-/// is taken over. Nothing outside the folder is written or removed, and nothing in it that is not
-/// ours. For one rank alone.
+/// A result folder that is locked for one run. While the object lives, the file `run.lock` with
+/// host, process and start time keeps other runs out. A lock that a dead process of this host left
+/// behind is taken over. Only files of this program are written or removed, and only in this
+/// folder. Use on one rank only.
 class OutputFolder
 {
  public:
-  /// Makes the folder and locks it; touches nothing else. Failure (74): another run has it, or
-  /// something is in the way that is not ours; Failure (64) for an empty path.
+  /// Makes the folder with its subfolder fields, and locks it. Failure (74) when another run has
+  /// the lock or a foreign file is in the way, (64) for an empty path.
   explicit OutputFolder(const std::string& path);
 
-  /// Removes field files and checkpoints of an earlier run, which would mix with ours, and what a
-  /// killed one left half written.
+  /// Removes field files, checkpoints and run.xdmf of an earlier run, which would mix with the new
+  /// results, and the temporary files of a killed run.
   void clear() const;
-  /// Removes what an earlier run wrote after a step from which ours goes on.
+  /// Removes the field files of an earlier run after step `step`, from which the new run continues,
+  /// and the temporary files of a killed run.
   void clear_after(long long step) const;
 
   const std::string& path() const { return path_; }
-  /// What is to be said: a lock was taken over; "" else.
+  /// Message for the log when a lock was taken over, else empty.
   const std::string& remark() const { return remark_; }
 
  private:
   void lock();
   void refuse_strangers() const;
 
-  /// The file with the lock; it goes when its owner does.
+  /// The lock file. The destructor removes it.
   struct Lock
   {
     Lock() = default;

@@ -14,7 +14,8 @@
 namespace trocar::io {
 namespace {
 
-/// Rows that room is made for at most before they are there: runs may be stopped long before.
+/// Upper limit of the history rows for which run.h5 has room at the start. More room could be
+/// wasted, because runs may be stopped long before the end.
 constexpr std::size_t most_ahead = 4096;
 
 template <class Number>
@@ -55,7 +56,7 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh, const Proven
   for (const auto& [name, count] : core::Ledger().entries())
     file.attribute("/ledger", std::string(name), count);
   place(file);
-  folder_.clear();  // not before the new file is there: the disk may be full
+  folder_.clear();  // last, so that old results survive when the disk is full
   if (!folder_.remark().empty()) remarks_.push_back(folder_.remark());
 }
 
@@ -63,7 +64,7 @@ Results::~Results()
 {
   try {
     write_frames();
-  } catch (const core::Failure&) {  // somebody is on the way out with a reason of his own
+  } catch (const core::Failure&) {  // a destructor must not throw
   }
 }
 
@@ -75,7 +76,7 @@ void Results::add_series(base::H5File& file) const
   }
 }
 
-/// Puts the file where run.h5 is and opens it for what is added byte by byte.
+/// Replaces run.h5 by `file` and opens it, so that rows and counts can be written in place.
 void Results::place(base::H5File& file)
 {
   places_.clear();
@@ -109,7 +110,7 @@ void Results::write_mesh(base::H5File& file, const mesh::Mesh& mesh) const
   file.write_words("/mesh/volumes", mesh.volumes);
 }
 
-/// The same file with twice the room for rows.
+/// Rewrites run.h5 with room for twice as many rows.
 void Results::make_room()
 {
   const base::H5File old = base::H5File::of_bytes(run_file(), run_.read_at(0, run_.size()));
@@ -159,8 +160,9 @@ void Results::write_fields(int step, double time, const std::vector<Field>& fiel
   for (const std::string& note : notes) file.attribute("/", note, std::int64_t{1});
   base::replace_file(path, file.bytes());
   frames_.push_back(std::move(frame));
-  // Written anew each time run.xdmf would cost the square of the steps: from some on it lags behind
-  // by a part of them until the run ends; of one that is killed the last may be missing there.
+  // Writing run.xdmf after every frame would cost the square of the number of frames. Beyond
+  // `at_once` frames it is written when their number has grown by 1/`part`, and at the end. If the
+  // run is killed, the last frames may be missing in run.xdmf.
   constexpr std::size_t at_once = 64, part = 8;
   if (frames_.size() <= at_once || frames_.size() >= shown_ + shown_ / part) write_frames();
 }
@@ -176,7 +178,7 @@ void Results::write_table(const std::string& path, const std::vector<double>& va
                           const std::string& units)
 {
   base::H5File file = base::H5File::of_bytes(run_file(), run_.read_at(0, run_.size()));
-  if (file.has(path)) file.remove(path);  // of an earlier run, with which this one goes on
+  if (file.has(path)) file.remove(path);  // from the earlier run that this run continues
   file.write(path, values, 0, units);
   place(file);
 }

@@ -10,11 +10,13 @@
 #include "core/fnv.hpp"
 #include "io/results.hpp"
 
-// Results of a run that goes on from a checkpoint, and what the checkpoint must know of them.
+// Results of a run that continues from a checkpoint, and the data of run.h5 that a checkpoint
+// keeps.
 namespace trocar::io {
 namespace {
 
-/// Bytes of a file become zero; whoever reads them elsewhere does so too.
+/// Sets bytes of a file to zero, so that the checksum does not depend on them. Failure (65) when
+/// they lie beyond its end.
 void blank(std::string& bytes, std::uint64_t from, std::uint64_t count)
 {
   if (from > bytes.size() || count > bytes.size() - from)
@@ -22,11 +24,12 @@ void blank(std::string& bytes, std::uint64_t from, std::uint64_t count)
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(from), count, '\0');
 }
 
-/// FNV-1a of run.h5 without the counts that change with every row. Rows up to the checkpoint's are
-/// taken in, later ones, which stand behind them in each history, are not.
+/// FNV-1a of run.h5 with zeros in place of all that changes after the checkpoint: row counts,
+/// ledger counts, and the room for rows after `at.rows`.
 std::string sum_of_what_stays(std::string bytes, const Checkpoint::RunFile& at)
 {
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> histories;  // data [B], columns
+  // Offset of the data [B], columns.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> histories;
   const auto place = [](long long number) { return static_cast<std::uint64_t>(number); };
   for (std::size_t i = 0; i + 2 < at.series.size(); i += 3) {
     blank(bytes, place(at.series[i + 1]), sizeof(std::uint64_t));
@@ -59,7 +62,9 @@ void Results::fill_in(Checkpoint& checkpoint) const
   checkpoint.frames = frames_;
 }
 
-/// Where the histories are in an earlier run's file, once it is known to be the checkpoint's.
+/// The places of the histories in the run.h5 of the checkpoint. Sets `room_`, and adds a remark
+/// when rows after the checkpoint will be cut off. Failure (65) when a history is missing or too
+/// short.
 std::vector<base::SeriesPlace> Results::places_in(const base::H5File& old, const std::string& bytes)
 {
   std::vector<base::SeriesPlace> places;
@@ -98,7 +103,8 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh,
   const std::string bytes = run_.read_at(0, run_.size());
   const base::H5File old = [&] {
     try {
-      // One that has grown since cannot be told from a damaged one; most have room from the start.
+      // A file that was rewritten with more room since then has other bytes, so no sum can be
+      // compared. This is rare: most files have enough room from the start.
       if (static_cast<long long>(bytes.size()) == from.run.bytes &&
           sum_of_what_stays(bytes, from.run) != from.run.sum)
         throw core::data_error("it is damaged");
@@ -116,12 +122,13 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh,
   write_frames();
 }
 
-/// A new file with what the old one has, its histories as long as ours, and a note where it is
-/// from.
+/// Writes a new run.h5 with the contents of `old`, the first `rows_` rows of its histories and room
+/// for `room_` rows. A `note` is stored under /provenance/restart_N; the tables that are only
+/// written at the end of a run are then dropped.
 void Results::take_over(const base::H5File& old, const std::vector<base::SeriesPlace>& old_places,
                         const std::string& note)
 {
-  const std::vector<base::SeriesPlace> from = old_places;  // they may be ours
+  const std::vector<base::SeriesPlace> from = old_places;  // a copy: `old_places` may be `places_`
   base::H5File file = base::H5File::create(run_file());
   file.attribute("/", "schema", std::string("trocar-1"));
   for (const std::string& name : old.top()) {

@@ -12,7 +12,7 @@
 
 namespace trocar::io {
 
-/// A file of that name may be replaced: there is none, or it is such a field.
+/// True when there is no such file, or when it is a Gmsh view like those written below.
 static bool may_be_replaced(const std::string& file)
 {
   std::error_code trouble;

@@ -8,7 +8,7 @@
 namespace trocar::io {
 namespace {
 
-/// A dataset of some file, or numbers that stand in the text itself.
+/// An XDMF data item. `what`: the path of a dataset (format HDF) or the numbers themselves (XML).
 std::string item(const std::string& shape, const char* type, const char* format,
                  const std::string& what)
 {
@@ -71,7 +71,7 @@ std::string curve_grid(const XdmfFrame& frame, const XdmfFrame::Curve& curve)
          attribute("radius", "Scalar", "Node", item(points, "Float", "HDF", in_file + "/radius"));
 }
 
-/// One grid of a collection over time.
+/// The grid of one frame in a temporal collection.
 std::string grid(const XdmfFrame& frame, const std::string& inside)
 {
   std::ostringstream time;

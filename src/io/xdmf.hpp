@@ -5,14 +5,14 @@
 
 namespace trocar::io {
 
-/// What ParaView is shown of one field file: names, shapes, places. XDMF 3.
+/// One field file as run.xdmf (XDMF 3) describes it to ParaView: names and shapes of datasets.
 struct XdmfFrame
 {
   struct Attribute
   {
     std::string name;     ///< path of the dataset
-    std::size_t columns;  ///< 0 for scalars
-    bool cell;            ///< by tet, else by node
+    std::size_t columns;  ///< values per row; 0 for scalars
+    bool cell;            ///< values per tet; false: per node
   };
   /// A polyline through `points` points: datasets NAME/axis (points, 3) and NAME/radius (points).
   struct Curve
@@ -26,18 +26,18 @@ struct XdmfFrame
   std::vector<Curve> curves;
 };
 
-/// Of the mesh in run.h5.
+/// Sizes of the mesh in run.h5.
 struct XdmfMesh
 {
   std::size_t nodes, tets;
   int nodes_per_tet;
 };
 
-/// Place of a field file below the result folder.
+/// Path of a field file, relative to the result folder.
 std::string step_file(int step);
 
-/// The text of run.xdmf: a collection over time of the tissue, and one of every curve. (Collections
-/// at every time instead would do as well, but ParaView's reader then names their blocks anew.)
+/// The text of run.xdmf: one temporal collection for the tissue and one for each curve. (One
+/// collection per time would do too, but ParaView's reader then renames the blocks.)
 std::string xdmf_text(const XdmfMesh& mesh, const std::vector<XdmfFrame>& frames);
 
 }  // namespace trocar::io
