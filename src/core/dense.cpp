@@ -6,6 +6,7 @@ namespace {
 template <class Columns>
 void solve_in_place(const MatX& L, Columns& b)
 {
+  if (b.size() == 0) return;  // Eigen would refer to a first entry that is not there
   L.triangularView<Eigen::Lower>().solveInPlace(b);
   L.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
 }
