@@ -43,9 +43,9 @@ struct SeriesPlace
 class H5File
 {
  public:
-  /// An empty file. `path`: its name in messages.
+  /// Makes an empty file in memory. `path` is only its name in messages.
   static H5File create(const std::string& path);
-  /// The file with this content. `path`: its name in messages.
+  /// Opens a file in memory with these bytes. `path` is only its name in messages.
   static H5File of_bytes(const std::string& path, std::string bytes);
   ~H5File() = default;
   H5File(H5File&&) noexcept = default;

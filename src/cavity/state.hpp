@@ -69,11 +69,11 @@ struct State
   }
 };
 
-/// A stretch of a needle's path that lies in no tissue.
+/// A part of a needle's path that lies in no tissue.
 struct VoidPiece
 {
-  Vec3 place;      ///< point of the needle in the middle of the stretch [m]
-  double channel;  ///< length of the path in tissue up to the stretch [m]
+  Vec3 place;      ///< point of the needle in the middle of that part [m]
+  double channel;  ///< length of tissue that the path crosses before this void [m]
 };
 
 /// Vertex coordinates by wall, each counted from the wall's reference point [m].

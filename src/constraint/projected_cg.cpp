@@ -60,7 +60,7 @@ class ProjectedCg
   VecX lambda_direction_;
   double direction_energy_ = 0.0;  ///< energy of the last direction [J]; 0: there is none
   bool on_rows_ = false;           ///< u_ and lambda_ meet the laws of all rows
-  bool exact_ = false;             ///< the factor is that of A: one pass solves
+  bool exact_ = false;             ///< the factor is that of the operator A, so one pass is enough
   int passes_ = 0;
   double left_ = 0.0;  ///< norm of the residual after the last trial [N]
 };

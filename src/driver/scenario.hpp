@@ -38,7 +38,7 @@ struct CheckpointSettings
 struct RestartSettings
 {
   std::string folder;   ///< folder of the checkpoint; empty: the run begins at the start
-  bool branch = false;  ///< the results go to another folder
+  bool branch = false;  ///< the results go to `output_dir`, not to `folder`
 };
 
 /// All input of a run: a scene, and what to compute and write. Made once from the options; no

@@ -84,7 +84,7 @@ TipRows add_tip_rows(const TipState& tip, const TipLaw& law, const Iterate& at,
     row.start = start;
     return row;
   };
-  // On a surface only the point of the tip touches, not yet its bevel face: m is the tangent alone.
+  // On a surface only the point of the tip touches, and the bevel face does not push it aside yet.
   const Vec3 ahead = end.tangent + (law.on_surface ? 0.0 : at.shaft.bevel) * end.normal_1;
   constraint::Row axial = aim(ahead, tip.lambda[2]);
   if (!law.on_surface) {

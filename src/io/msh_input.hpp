@@ -24,7 +24,7 @@ class MshInput
   /// The next fields of the section are binary. They begin on the next line.
   void begin_bytes();
   std::int32_t integer();
-  std::int64_t size();  ///< 64-bit integer: counts, and tags of nodes and elements
+  std::int64_t size();  ///< reads 64 bits: a count, or the tag of a node or element
   double real();        ///< Failure (65) when the number is not finite
 
   /// The next word as text, in binary parts too; empty at the end of the file.

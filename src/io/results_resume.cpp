@@ -123,8 +123,8 @@ Results::Results(const std::string& folder, const mesh::Mesh& mesh,
 }
 
 /// Writes a new run.h5 with the contents of `old`, the first `rows_` rows of its histories and room
-/// for `room_` rows. A `note` is stored under /provenance/restart_N; the tables that are only
-/// written at the end of a run are then dropped.
+/// for `room_` rows. With a `note` (not empty) the run continues from a checkpoint: the note goes
+/// to /provenance/restart_N, and tables that a run writes at its end are left out.
 void Results::take_over(const base::H5File& old, const std::vector<base::SeriesPlace>& old_places,
                         const std::string& note)
 {

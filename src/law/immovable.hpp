@@ -4,8 +4,8 @@
 
 namespace trocar::law {
 
-/// W_ii plus compliance of every row [m/N]. It is exactly 0 if nothing can move the row: all its
-/// dofs are prescribed, and its gap cannot change.
+/// For every row i the sum of W_ii and the row's own compliance [m/N]. The sum is exactly 0 when
+/// all dofs of the row are prescribed, so that its gap cannot change.
 VecX mobility(const Problem& problem);
 
 /// Sets the multipliers of blocks without mobility `w` to those that their gaps ask for. Records in

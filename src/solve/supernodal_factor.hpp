@@ -51,7 +51,7 @@ class SupernodalFactor
     int first;        ///< position of its first column
     int columns;      ///< number of columns, and of rows in the diagonal block
     int rows;         ///< number of rows, diagonal block included
-    const int* row;   ///< position of every row
+    const int* row;   ///< position in the factor of each of these rows
     const double* L;  ///< (rows x columns), column-major
     std::size_t at;   ///< offset of `L` in the values of the whole factor
 

@@ -5,8 +5,8 @@
 namespace trocar::tissue {
 
 /// Sets the linearisation point at_ for `iterate`; false when an element is inverted. `goes_on`:
-/// the last linearisation belongs to the same step. An exact tangent then takes its pressures from
-/// that linearisation.
+/// this step has been linearised before. If it has, an exact tangent takes its pressures from the
+/// previous linearisation.
 bool Tissue::linearise_at(const OwnedField& iterate, bool goes_on)
 {
   const bool led = goes_on && exact_at_ && tangent_.exact();

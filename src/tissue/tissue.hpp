@@ -111,11 +111,11 @@ class Tissue
   Tissue(const mesh::Mesh& mesh, const fem::Space& space, TissueSettings settings,
          core::Ledger& ledger);
 
-  /// Linearises the tissue at `iterate`, under the loads `more` that are linearised there too.
-  /// Velocities are differences to `old`. `goes_on`: the last linearisation belongs to the same
-  /// step. Linear tissue keeps the factored operators of two pairs of rates. Refused when an
-  /// element is inverted or an exact tangent has no factor. The result is valid until the next
-  /// call. Collective.
+  /// Linearises the tissue at `iterate`. `more`: further loads, linearised at `iterate` as well.
+  /// Velocities are differences to `old`. `goes_on`: this step has been linearised before. Linear
+  /// tissue keeps two factored operators, each for its own step length (`core::Rates`). Refused
+  /// when an element is inverted or an exact tangent has no factor. The result is valid until the
+  /// next call. Collective.
   core::Outcome<solve::Linearisation> linearise(const TissueState& old, const OwnedField& iterate,
                                                 const TimeStep& step, const fem::Load& more = {},
                                                 bool goes_on = false);
