@@ -92,7 +92,9 @@ for name, settings, tolerance in [
                 check(other[key].max() <= 1e-12, f"{name}: volumes exact on {ranks} ranks")
                 continue
             if key == "time_residual":  # of statics round-off as well
-                off = abs(values - other[key]).max()
+                # What an iterated step leaves below its tolerance, 1e-6, depends on when a lagged factor was made
+                # anew, which round-off decides.
+                off = abs(np.maximum(values, 1e-6) - np.maximum(other[key], 1e-6)).max()
                 check(off <= max(1e-8, 1e-6 * values.max()), f"{name}: as balanced on {ranks} ranks")
                 continue
             if key.endswith("residual"):  # round-off by nature; bounded by the tolerance instead
