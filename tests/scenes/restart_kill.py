@@ -28,7 +28,7 @@ def wait_for(path, process):
 
 
 # Stopped by a signal, by one to a single rank, by the clock: 75, and what comes after is the same.
-slow = deterministic({**scene("gel_insertion.opts", time_end="4", output_every="1"), "-checkpoint_every": "1"})
+slow = deterministic({**scene("gel_insertion.opts", time_end="2.4", output_every="1"), "-checkpoint_every": "1"})
 reference = completed(slow)
 for ranks in (1, 2):
     folder = os.path.join(FOLDER, f"stopped_{ranks}")
@@ -68,10 +68,10 @@ for number in (signal.SIGTERM, signal.SIGINT):
 # As a run that goes on is ended before it has a checkpoint of its own: the one it goes on from stands.
 long_steps = {**slow, "-time_end": "40", "-checkpoint_every": "0"}
 process = started({**long_steps, "-restart": folder, "-output_dir": folder})
-wait_for(folder + "/fields/step_000110.h5", process)
+wait_for(folder + "/fields/step_000070.h5", process)
 process.send_signal(signal.SIGTERM)
 out, error = process.communicate()
-check(process.returncode == 75 and "t = 4 s stands" in error, f"SIGTERM after -restart: {process.returncode} {error!r}")
+check(process.returncode == 75 and "t = 2.4 s stands" in error, f"SIGTERM after -restart: {process.returncode} {error!r}")
 
 # Killed at any moment, again and again, then left to come to its end; on two ranks one of them alone.
 def killed_until_done(name, ranks, most):
@@ -94,7 +94,7 @@ def killed_until_done(name, ranks, most):
         check(time.time() - begun < 30, f"{name}, kill {kills}: nobody waits")
 
 
-for ranks, most in ((1, 12), (2, 8)) if not LONG else ((1, 150), (2, 50)):
+for ranks, most in ((1, 15), (2, 5)) if not LONG else ((1, 150), (2, 50)):
     left, round_number = most, 0
     expected = reference if ranks == 1 else completed(slow, ranks)
     while left > 0:
