@@ -59,8 +59,8 @@ double Comm::sum(double value) const
   return one[0];
 }
 
-// MPI may sum in a different order in every run. Here the order is always that of the ranks, so
-// that results are reproducible.
+// The MPI standard recommends, but does not demand, that a reduction gives the same bits in every
+// run. Here the order is always that of the ranks.
 void Comm::sum(core::VecX& values) const
 {
   if (size_ == 1) return;
@@ -69,6 +69,12 @@ void Comm::sum(core::VecX& values) const
                            static_cast<int>(values.size()), MPI_DOUBLE, comm_));
   values = all.col(0);
   for (int rank = 1; rank < size_; ++rank) values += all.col(rank);
+}
+
+void Comm::merge(core::VecX& values) const
+{
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
+                           MPI_SUM, comm_));
 }
 
 long long Comm::sum(long long value) const

@@ -21,8 +21,12 @@ class Comm
   int size() const noexcept { return size_; }
   bool root() const noexcept { return rank_ == 0; }
 
-  double sum(double value) const;        ///< sum over all ranks, in their order; collective
-  void sum(core::VecX& values) const;    ///< the same for every entry, in place
+  double sum(double value) const;      ///< sum over all ranks, in their order; collective
+  void sum(core::VecX& values) const;  ///< the same for every entry, in place
+  /// Puts together a list of which every entry has its value on one rank and is 0 on the others, in
+  /// place. In whatever order MPI adds, the result is the same. For lists as long as a mesh, which
+  /// `sum` would hold once for every rank. Collective.
+  void merge(core::VecX& values) const;
   double max(double value) const;        ///< largest of all ranks; collective
   void max(core::VecX& values) const;    ///< the same for every entry, in place
   long long sum(long long value) const;  ///< sum over all ranks; collective

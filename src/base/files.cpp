@@ -7,6 +7,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <sstream>
+#include <utility>
 
 #include "core/failure.hpp"
 
@@ -90,6 +93,15 @@ void Descriptor::sync() const
 void Descriptor::close()
 {
   if (::close(std::exchange(number_, -1)) != 0) throw failure("close", path_);
+}
+
+std::optional<std::string> contents_of(const std::string& path)
+{
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  if (!stream || stream.bad()) return std::nullopt;
+  return std::move(bytes).str();
 }
 
 void sync_to_disk(const std::string& path)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,9 @@ class Descriptor
   std::string path_;
   int number_ = -1;
 };
+
+/// All bytes of a file; nothing when it cannot be read.
+std::optional<std::string> contents_of(const std::string& path);
 
 /// Writes a file completely or not at all: writes a temporary file with a unique name, syncs it and
 /// renames it to `path`. An old file or link at `path` is replaced, never written through. Throws

@@ -21,8 +21,12 @@ Heartbeat::Heartbeat(MPI_Comm comm, int seconds, Silent silent)
   if (size == 1) return;
   TROCAR_MPI(MPI_Comm_rank(machine_, &own_));
   void* memory = nullptr;
-  TROCAR_MPI(MPI_Win_allocate_shared(sizeof(std::atomic<long>), 1, MPI_INFO_NULL, machine_, &memory,
-                                     &window_));
+  // A machine without shared memory for MPI goes without a heartbeat.
+  TROCAR_MPI(MPI_Comm_set_errhandler(machine_, MPI_ERRORS_RETURN));
+  int here = MPI_Win_allocate_shared(sizeof(std::atomic<long>), 1, MPI_INFO_NULL, machine_, &memory,
+                                     &window_) == MPI_SUCCESS;
+  TROCAR_MPI(MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_INT, MPI_MIN, machine_));
+  if (!here) return;
   new (memory) std::atomic<long>(0);
   rank_.resize(static_cast<std::size_t>(size));
   TROCAR_MPI(MPI_Allgather(&mine, 1, MPI_INT, rank_.data(), 1, MPI_INT, machine_));
@@ -46,7 +50,7 @@ Heartbeat::~Heartbeat()
     thread_.join();
   }
   // A count of -1 tells the other ranks that this rank ended normally.
-  if (window_ != MPI_WIN_NULL) counts_[static_cast<std::size_t>(own_)]->store(-1);
+  if (!counts_.empty()) counts_[static_cast<std::size_t>(own_)]->store(-1);
   if (window_ != MPI_WIN_NULL) MPI_Win_free(&window_);
   if (machine_ != MPI_COMM_NULL) MPI_Comm_free(&machine_);
 }

@@ -203,7 +203,7 @@ VecX Wall::at_vertices(const OwnedField& field, const fem::Space& space) const
     const int local = space.owned_local(nodes_[i]);
     if (local >= 0) values.segment<3>(3 * static_cast<Eigen::Index>(i)) = field.node(local);
   }
-  space.comm().sum(values);
+  space.comm().merge(values);
   add_caps(values);
   return values;
 }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <sstream>
+#include <utility>
 
+#include "base/files.hpp"
 #include "core/option_text.hpp"
 #include "core/words.hpp"
 #include "driver/option_list.hpp"
@@ -31,11 +33,9 @@ std::string text_of(const std::string& file, const std::string& before, core::Ex
   if (!fs::exists(status)) throw failure("no such file");
   if (!fs::is_regular_file(status)) throw failure("this is no file that can be read:");
   if (fs::file_size(file, trouble) > largest_file) throw failure("too large (16 MB at most):");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || stream.bad()) throw failure("this cannot be read:");
-  return text.str();
+  std::optional<std::string> text = base::contents_of(file);
+  if (!text) throw failure("this cannot be read:");
+  return std::move(*text);
 }
 
 /// Path of a file that an option names: in the working folder, else in `beside`, the folder of the

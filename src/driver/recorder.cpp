@@ -72,7 +72,7 @@ Recorder::Recorder(const step::Model& model, const Scenario& scenario, const Inv
 {
   const std::string solver = model.tissue.factor().solver().describe();
   base::on_root(model.space.comm(), [&] {
-    options_ = options_with_hashes(options);
+    options_ = options_with_hashes(options, scenario.mesh);
     std::vector<io::Series> series;
     for (const History& history : histories_) series.push_back(history.series);
     const std::string& folder = output_->folder;
@@ -99,7 +99,7 @@ void Recorder::checkpoint(const step::State& state, const step::Progress& at)
     const step::TimeSettings& time = model_->scene.time;
     now.version = build_description();
     now.options = options_;
-    now.time = {state.t, time.step, time.asked, time.end, at.nominal, at.accepted};
+    now.time = {state.t, time.step, time.end, at.nominal, at.accepted};
     for (const auto& [name, count] : model_->ledger.entries())
       now.ledger.emplace_back(std::string(name), count);
     results_->fill_in(now);

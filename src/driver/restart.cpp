@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <string_view>
 
+#include "base/files.hpp"
 #include "core/fnv.hpp"
 #include "core/words.hpp"
 #include "driver/option_list.hpp"
@@ -157,16 +157,14 @@ RestartSettings read_restart_settings(core::Options& options, std::string& outpu
 }
 
 std::vector<io::Checkpoint::Option> options_with_hashes(
-    const std::vector<core::ResolvedOption>& resolved)
+    const std::vector<core::ResolvedOption>& resolved, const mesh::Mesh& mesh)
 {
   std::vector<io::Checkpoint::Option> options;
   for (const core::ResolvedOption& one : resolved) {
     options.push_back({one.name, one.value, ""});
     if (one.value.empty() || type_of(one.name) != core::OptionType::file) continue;
-    std::ifstream stream(one.value, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    options.back().hash = core::fnv1a(bytes.str());
+    options.back().hash =
+        one.name == "mesh" ? mesh.hash : core::fnv1a(base::contents_of(one.value).value_or(""));
   }
   return options;
 }
@@ -178,10 +176,11 @@ io::Checkpoint read_restart(const Scenario& scenario,
   io::Checkpoint from;
   base::on_root(comm, [&] {
     from = io::read_checkpoint(scenario.restart.folder);
-    refuse_other_options(from, options_with_hashes(resolved), scenario.restart.branch);
+    refuse_other_options(from, options_with_hashes(resolved, scenario.mesh),
+                         scenario.restart.branch);
   });
   io::Checkpoint::Time& time = from.time;
-  std::vector<double> seconds{time.now, time.step, time.asked, time.end};
+  std::vector<double> seconds{time.now, time.step, time.end};
   std::vector<long long> counts{time.nominal, time.accepted};
   std::vector<std::string> names;
   for (const auto& [name, count] : from.ledger) {
@@ -191,7 +190,7 @@ io::Checkpoint read_restart(const Scenario& scenario,
   comm.broadcast(seconds);
   comm.broadcast(counts);
   comm.broadcast(names);
-  time = {seconds[0], seconds[1], seconds[2], seconds[3], counts[0], counts[1]};
+  time = {seconds[0], seconds[1], seconds[2], counts[0], counts[1]};
   from.ledger.clear();
   for (std::size_t i = 0; i < names.size(); ++i) from.ledger.emplace_back(names[i], counts[2 + i]);
   return from;

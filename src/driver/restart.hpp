@@ -16,7 +16,7 @@ RestartSettings read_restart_settings(core::Options& options, std::string& outpu
 /// The options as the run used them, with the FNV-1a of the contents of every file that they name.
 /// Call on one rank only.
 std::vector<io::Checkpoint::Option> options_with_hashes(
-    const std::vector<core::ResolvedOption>& resolved);
+    const std::vector<core::ResolvedOption>& resolved, const mesh::Mesh& mesh);
 
 /// Reads the checkpoint from which a scenario continues. It is complete on rank 0; other ranks have
 /// its time and ledger only. Failure (65) when it cannot be read, (64) when an option differs that

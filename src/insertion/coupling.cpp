@@ -102,7 +102,7 @@ RadiusCorrection::Compliance radius_compliance(const Ground& ground, const Site&
                                                double length)
 {
   if (!ground.settings.radius_correction) return {};
-  return ground.settings.radius_correction->at(body, ground.elasticity(site.tet),
+  return ground.settings.radius_correction->at(body, ground.material(site.tet),
                                                local_edge(ground.mesh, site.tet), length);
 }
 
@@ -222,7 +222,7 @@ int add_lever_rows(const Ground& ground, const InsertionState& state, const Iter
     return -1;  // most of the way lies in a void
   const double compliance =
       radius_compliance(ground, *tip, at.body, 0.5 * (tip->arc - held.arc)).lateral +
-      lever_compliance(ground.elasticity(tip->tet), passed, half);
+      lever_compliance(ground.material(tip->tet), passed, half);
   return add_lateral_rows(Hold(tip->anchor, at), compliance, Vec3::Zero(), set.next_point(), set);
 }
 

@@ -6,11 +6,11 @@
 namespace trocar::insertion {
 
 Ground::Ground(const mesh::Mesh& mesh_of, const mesh::Locator& locator_of,
-               InsertionSettings settings_of, std::vector<Elasticity> tissues_of)
+               InsertionSettings settings_of, std::vector<tissue::Material> materials_of)
     : mesh(mesh_of),
       locator(locator_of),
       settings(std::move(settings_of)),
-      tissues(std::move(tissues_of)),
+      materials(std::move(materials_of)),
       membranes(mesh_of, settings.puncture)
 {
   settings.tip.cutting.resize(mesh.volumes.size(), 0.0);
@@ -25,9 +25,9 @@ double Ground::cutting(int tet) const
   return settings.tip.cutting[static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)])];
 }
 
-const Elasticity& Ground::elasticity(int tet) const
+const tissue::Material& Ground::material(int tet) const
 {
-  return tissues[static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)])];
+  return materials[static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)])];
 }
 
 double Ground::border(int from, int to, const Vec3& X) const

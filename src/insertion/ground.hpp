@@ -38,13 +38,13 @@ struct InsertionSettings
 /// Nothing in this room is collective: every rank computes the same results from the same numbers.
 struct Ground
 {
-  /// `tissues`: by physical volume of the mesh.
+  /// `materials`: by physical volume of the mesh.
   Ground(const mesh::Mesh& mesh, const mesh::Locator& locator, InsertionSettings settings,
-         std::vector<Elasticity> tissues);
+         std::vector<tissue::Material> materials);
 
   /// f_cut of the tissue that a tet belongs to [N]; 0 outside the tissue (tet -1).
   double cutting(int tet) const;
-  const Elasticity& elasticity(int tet) const;  ///< of the tissue that a tet belongs to
+  const tissue::Material& material(int tet) const;  ///< of the tissue that a tet belongs to
   /// Force that a tip needs to go from one tet into another (-1: no tissue) at the reference place
   /// X [N]: the membrane's threshold, and at least f_cut of `to` unless `from` is cut with a force
   /// too.
@@ -53,7 +53,7 @@ struct Ground
   const mesh::Mesh& mesh;
   const mesh::Locator& locator;
   InsertionSettings settings;
-  std::vector<Elasticity> tissues;  ///< by physical volume of the mesh
+  std::vector<tissue::Material> materials;  ///< by physical volume of the mesh
   Membranes membranes;
   bool resists = false;  ///< some membrane or tissue of the mesh resists the tip
 };

@@ -3,15 +3,9 @@
 #include <vector>
 
 #include "core/math.hpp"
+#include "tissue/material.hpp"
 
 namespace trocar::insertion {
-
-/// Elastic constants of a tissue at rest.
-struct Elasticity
-{
-  double shear = 0.0;    ///< μ [Pa]
-  double poisson = 0.0;  ///< ν
-};
 
 /// Compliance of the tissue next to a thin shaft that the mesh is too coarse to resolve
 /// (docs/theory.md section 11). The displacement of a line load grows as the logarithm of the
@@ -30,7 +24,7 @@ struct RadiusCorrection
     double axial = 0.0, lateral = 0.0;  ///< [m/N]
   };
   /// Compliance of rows that hold the length `length` of path [m]; `edge`: see `local_edge` [m].
-  Compliance at(int needle, const Elasticity& tissue, double edge, double length) const;
+  Compliance at(int needle, const tissue::Material& tissue, double edge, double length) const;
 };
 
 /// Compliance of a lateral row at the distance a from the only other place that holds a needle
@@ -39,7 +33,7 @@ struct RadiusCorrection
 /// with the ratio e). A single row at the end of the line would do the same with the compliance
 /// 3/(k a). A tet resists as if the line were `resolved` long, however short the line is, so the
 /// row only gets the difference 3/k (1/a - 1/resolved); 0 for a >= resolved. Lengths in metres.
-double lever_compliance(const Elasticity& tissue, double a, double resolved);
+double lever_compliance(const tissue::Material& tissue, double a, double resolved);
 
 /// `fit` of a kind of tets, fitted on three meshes (docs/theory.md section 11).
 double radius_fit(bool quadratic, bool shared_dilatation);

@@ -1,9 +1,10 @@
 #include "io/checkpoint.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "base/files.hpp"
 #include "base/hdf5.hpp"
@@ -41,11 +42,9 @@ core::Failure damaged(const std::string& path, const std::string& what)
 
 std::string contents(const std::string& path)
 {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw damaged(path, "cannot be read");
-  return text.str();
+  std::optional<std::string> bytes = base::contents_of(path);
+  if (!bytes) throw damaged(path, "cannot be read");
+  return std::move(*bytes);
 }
 
 /// Reads checkpoint.txt. Failure (65) unless its own checksum, its format and the file name in it
@@ -68,21 +67,6 @@ Manifest manifest_of(const std::string& path)
   if (manifest.file != turns[0] && manifest.file != turns[1])
     throw damaged(path, "names a file that is no checkpoint");
   return manifest;
-}
-
-std::string joined(const std::vector<std::string>& lines)
-{
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
-}
-
-std::vector<std::string> split(const std::string& text)
-{
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 /// One frame as a line of words separated by tabs. No name contains a tab.
@@ -126,26 +110,29 @@ std::vector<std::int64_t> wide(const std::vector<long long>& values)
 
 void write_state(base::H5File& file, const core::Archive& state)
 {
-  file.write_text("/state/names", joined(state.names));
+  file.write_words("/state/names", state.names);
   file.write("/state/whole", wide(state.whole), 0, "1");
   file.write("/state/real", state.real, 0, "1");
-  std::vector<std::string> fields;
+  std::vector<std::string> fields, units;
   for (const core::Archive::Field& field : state.fields) {
     fields.push_back(field.name);
+    units.push_back(field.unit);
     file.write("/field/" + field.name, field.values, 0, field.unit);
   }
-  file.write_text("/state/fields", joined(fields));
+  file.write_words("/state/fields", fields);
+  file.write_words("/state/units", units);
 }
 
 core::Archive read_state(const base::H5File& file)
 {
   core::Archive state;
-  state.names = split(file.read_words("/state/names").at(0));
+  state.names = file.read_words("/state/names");
   const std::vector<std::int64_t> whole = file.read_integers("/state/whole");
   state.whole.assign(whole.begin(), whole.end());
   state.real = file.read_reals("/state/real");
-  for (const std::string& name : split(file.read_words("/state/fields").at(0)))
-    state.fields.push_back({name, "", file.read_reals("/field/" + name)});
+  const auto fields = file.read_words("/state/fields"), units = file.read_words("/state/units");
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    state.fields.push_back({fields[i], units.at(i), file.read_reals("/field/" + fields[i])});
   return state;
 }
 
@@ -164,7 +151,7 @@ std::string file_of(const Checkpoint& all, const std::string& path)
   file.write_words("/run/option/value", values);
   file.write_words("/run/option/hash", hashes);
   const Checkpoint::Time& time = all.time;
-  file.write("/run/time", std::vector<double>{time.now, time.step, time.asked, time.end}, 0, "s");
+  file.write("/run/time", std::vector<double>{time.now, time.step, time.end}, 0, "s");
   file.write("/run/steps", wide({time.nominal, time.accepted}), 0, "1");
   file.write("/run/file/size", wide({all.run.bytes, all.run.rows, all.run.room}), 0, "1");
   file.write_words("/run/file/id_sum", {all.run.id, all.run.sum});
@@ -178,7 +165,7 @@ std::string file_of(const Checkpoint& all, const std::string& path)
   file.write_words("/run/ledger/name", ledger);
   file.write("/run/ledger/count", wide(counts), 0, "1");
   for (const XdmfFrame& frame : all.frames) frames.push_back(line_of(frame));
-  file.write_text("/run/frames", joined(frames));
+  file.write_words("/run/frames", frames);
   write_state(file, all.state);
   return file.bytes();
 }
@@ -194,7 +181,7 @@ Checkpoint checkpoint_of(const base::H5File& file)
     all.options.push_back({names[i], values.at(i), hashes.at(i)});
   const std::vector<double> time = file.read_reals("/run/time");
   const std::vector<std::int64_t> steps = file.read_integers("/run/steps");
-  all.time = {time.at(0), time.at(1), time.at(2), time.at(3), steps.at(0), steps.at(1)};
+  all.time = {time.at(0), time.at(1), time.at(2), steps.at(0), steps.at(1)};
   const auto size = file.read_integers("/run/file/size");
   const auto series = file.read_integers("/run/file/series");
   const auto places = file.read_integers("/run/file/ledger");
@@ -210,7 +197,7 @@ Checkpoint checkpoint_of(const base::H5File& file)
   const auto counts = file.read_integers("/run/ledger/count");
   for (std::size_t i = 0; i < counted.size(); ++i)
     all.ledger.emplace_back(counted[i], counts.at(i));
-  for (const std::string& line : split(file.read_words("/run/frames").at(0)))
+  for (const std::string& line : file.read_words("/run/frames"))
     all.frames.push_back(frame_of(line));
   all.state = read_state(file);
   return all;

@@ -18,16 +18,19 @@ struct Checkpoint
   struct Option
   {
     std::string name, value, hash;
+
+    bool operator==(const Option&) const = default;
   };
   /// Time and step counts of the run.
   struct Time
   {
     double now = 0.0;        ///< time of the state [s]
     double step = 0.0;       ///< step length h [s]
-    double asked = 0.0;      ///< h that was asked for; `step` may be shorter [s]
     double end = 0.0;        ///< end of the run [s]
     long long nominal = 0;   ///< completed steps of full length
     long long accepted = 0;  ///< accepted steps; each part of a halved step counts
+
+    bool operator==(const Time&) const = default;
   };
 
   /// run.h5 at the time of the checkpoint. `sum` is the FNV-1a of its bytes, with zeros in place of
@@ -42,6 +45,8 @@ struct Checkpoint
     /// Per history: offset of the data [B], offset of the row count [B], columns.
     std::vector<long long> series;
     std::vector<long long> ledger;  ///< offset of each ledger count [B]
+
+    bool operator==(const RunFile&) const = default;
   };
 
   std::string version;  ///< of the program that wrote the checkpoint
@@ -51,6 +56,8 @@ struct Checkpoint
   std::vector<std::pair<std::string, long long>> ledger;
   std::vector<XdmfFrame> frames;  ///< frames of run.xdmf
   core::Archive state;
+
+  bool operator==(const Checkpoint&) const = default;
 };
 
 /// True when `name` is checkpoint.txt or one of the two checkpoint files.

@@ -13,17 +13,23 @@ struct XdmfFrame
     std::string name;     ///< path of the dataset
     std::size_t columns;  ///< values per row; 0 for scalars
     bool cell;            ///< values per tet; false: per node
+
+    bool operator==(const Attribute&) const = default;
   };
   /// A polyline through `points` points: datasets NAME/axis (points, 3) and NAME/radius (points).
   struct Curve
   {
     std::string name;
     std::size_t points;
+
+    bool operator==(const Curve&) const = default;
   };
   int step;
   double time;  ///< [s]
   std::vector<Attribute> attributes;
   std::vector<Curve> curves;
+
+  bool operator==(const XdmfFrame&) const = default;
 };
 
 /// Sizes of the mesh in run.h5.

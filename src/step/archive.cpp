@@ -164,8 +164,11 @@ class Reader
   {
     if constexpr (std::is_floating_point_v<T>)
       x = next(archive_->real, real_);
-    else
-      x = static_cast<T>(next(archive_->whole, whole_));
+    else {
+      const long long value = next(archive_->whole, whole_);
+      x = static_cast<T>(value);
+      if (static_cast<long long>(x) != value) throw core::data_error("a number of it is too large");
+    }
   }
   /// Size of the next list, or 1 or 0 for an optional part. A size above the number of all entries
   /// of the archive is damage: throws Failure (65) before memory is allocated for it.

@@ -24,10 +24,7 @@ Model::Model(const Scene& of, const base::Comm& comm)
   }
   if (needles.empty()) return;
   locator.emplace(scene.mesh);
-  std::vector<insertion::Elasticity> tissues;
-  for (const tissue::Material& material : scene.tissue.materials)
-    tissues.push_back({material.mu(), material.poisson});
-  ground.emplace(scene.mesh, *locator, scene.insertion, std::move(tissues));
+  ground.emplace(scene.mesh, *locator, scene.insertion, scene.tissue.materials);
 }
 
 bool Model::beams() const

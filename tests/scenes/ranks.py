@@ -92,10 +92,14 @@ for name, settings, tolerance in [
                 check(other[key].max() <= 1e-12, f"{name}: volumes exact on {ranks} ranks")
                 continue
             if key == "time_residual":  # of statics round-off as well
-                # What an iterated step leaves below its tolerance, 1e-6, depends on when a lagged factor was made
-                # anew, which round-off decides.
-                off = abs(np.maximum(values, 1e-6) - np.maximum(other[key], 1e-6)).max()
-                check(off <= max(1e-8, 1e-6 * values.max()), f"{name}: as balanced on {ranks} ranks")
+                off = abs(values - other[key])
+                # What an iterated step leaves below its tolerance, 1e-6, is that of its factor. Round-off decides
+                # whether a pass more is made, and with that when a lagged factor is made anew: in steps with
+                # factors of different age both are to be within the tolerance.
+                same = first["compliance/factor_age"] == other["compliance/factor_age"]
+                below = (np.maximum(values, other[key]) <= 1e-6) & (first["time_linearisations"] > 1)
+                good = (off <= max(1e-8, 1e-6 * values.max())) | (~same & below)
+                check(good.all(), f"{name}: as balanced on {ranks} ranks")
                 continue
             if key.endswith("residual"):  # round-off by nature; bounded by the tolerance instead
                 check(other[key].max() <= 1e-9, f"{name}: residual <= 1e-9 m on {ranks} ranks")

@@ -17,7 +17,7 @@ def scene(file, **changes):
     built = os.path.join(ROOT, settings["-mesh"])
     if "mesh" not in changes and not os.path.exists(built):
         settings["-mesh"] = small_block() if mesh == "small_block" else geometry(mesh)
-    settings.setdefault("-tissue_element", "p1")
+    settings.setdefault("-tissue_element", "auto")  # as shipped
     settings.pop("-checkpoint_every", None)
     return settings
 

@@ -38,6 +38,38 @@ TEST(Reductions, AreEqualOnEveryRank)
   EXPECT_EQ(values, core::Vec3(0.5 * n * (n - 1), n, 0.5 * n * (n - 1)));
 }
 
+// In the order of ranks: 1e16 swallows every 1 that comes after it, none that came before together.
+TEST(Reductions, SumInTheOrderOfRanks)
+{
+  const Comm comm(MPI_COMM_WORLD);
+  const auto of = [&](int rank) { return rank == comm.size() - 1 ? 1e16 : 1.0 + 1e-3 * rank; };
+  double wanted = of(0);
+  for (int rank = 1; rank < comm.size(); ++rank) wanted += of(rank);
+  EXPECT_EQ(comm.sum(of(comm.rank())), wanted);
+}
+
+TEST(Reductions, PutTogetherWhatRanksHaveOfAList)
+{
+  const Comm comm(MPI_COMM_WORLD);
+  const int n = comm.size();
+  core::VecX mine = core::VecX::Zero(n);
+  mine[comm.rank()] = 0.1 * (comm.rank() + 1);
+  comm.merge(mine);
+  core::VecX largest = core::VecX::Constant(2, -1.0 - comm.rank());
+  largest[1] = comm.rank();
+  comm.max(largest);
+  EXPECT_EQ(largest, core::VecX(Eigen::Vector2d(-1.0, n - 1)));
+  // Rank r has r numbers.
+  std::vector<double> numbers(static_cast<std::size_t>(comm.rank()), 0.5 * comm.rank());
+  numbers = comm.gather(numbers);
+  EXPECT_EQ(numbers.size(), comm.root() ? static_cast<std::size_t>(n * (n - 1) / 2) : 0U);
+  std::size_t at = 0;
+  for (int rank = 0; rank < n; ++rank) {
+    EXPECT_EQ(mine[rank], 0.1 * (rank + 1));
+    for (int k = 0; comm.root() && k < rank; ++k) EXPECT_EQ(numbers[at++], 0.5 * rank);
+  }
+}
+
 TEST(Reductions, AskEveryRank)
 {
   const Comm comm(MPI_COMM_WORLD);

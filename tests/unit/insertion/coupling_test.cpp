@@ -21,7 +21,7 @@ struct Inserted
         u{core::VecX::Zero(3 * mesh.node_count())},
         tissue(mesh, locator, u),
         needle(settings()),
-        ground(mesh, locator, laws(friction, fit), {{2000.0, 0.4}}),
+        ground(mesh, locator, laws(friction, fit), {{5600.0, 0.4}}),
         state(start(ground, needle))
   {
   }
@@ -84,7 +84,7 @@ TEST(RadiusCorrection, IsTheLogarithmOfALineLoad)
 {
   const double mu = 2000.0, nu = 0.4, r = 0.0005, length = 0.01;
   const RadiusCorrection correction{{r}, 0.5};
-  const Elasticity tissue{mu, nu};
+  const tissue::Material tissue{2.0 * mu * (1.0 + nu), nu};
   const auto coarse = correction.at(0, tissue, 100.0 * r, length);
   const double line = std::log(50.0) / (2.0 * std::numbers::pi * mu * length);
   EXPECT_NEAR(coarse.axial, line, 1e-6 * line);

@@ -25,7 +25,7 @@ Checkpoint some(int step, std::size_t size = 40)
   Checkpoint one;
   one.version = "a test";
   one.options = {{"tissue_young", "5000", ""}, {"mesh", "a mesh.msh", "00ff"}, {"fix", "", ""}};
-  one.time = {0.1 * step, 0.1, 0.11, 3.0, step, step + 2};
+  one.time = {0.1 * step, 0.1, 3.0, step, step + 2};
   one.run = {1000 + step, step + 3, 64, "an id", "00ab", {1, 2, 3, 4, 5, 6}, {9, 8}};
   one.ledger = {{"steps", step}, {"solves", 1LL << 40}};
   one.frames = {
@@ -49,39 +49,6 @@ void in_folder(const std::string& folder, const std::function<void()>& work)
   });
 }
 
-void expect_equal(const Checkpoint& one, const Checkpoint& other)
-{
-  EXPECT_EQ(one.version, other.version);
-  ASSERT_EQ(one.options.size(), other.options.size());
-  for (std::size_t i = 0; i < one.options.size(); ++i) {
-    EXPECT_EQ(one.options[i].name, other.options[i].name);
-    EXPECT_EQ(one.options[i].value, other.options[i].value);
-    EXPECT_EQ(one.options[i].hash, other.options[i].hash);
-  }
-  EXPECT_EQ(one.time.now, other.time.now);
-  EXPECT_EQ(one.time.step, other.time.step);
-  EXPECT_EQ(one.time.asked, other.time.asked);
-  EXPECT_EQ(one.time.end, other.time.end);
-  EXPECT_EQ(one.time.nominal, other.time.nominal);
-  EXPECT_EQ(one.time.accepted, other.time.accepted);
-  EXPECT_EQ(one.run.bytes, other.run.bytes);
-  EXPECT_EQ(one.run.rows, other.run.rows);
-  EXPECT_EQ(one.run.room, other.run.room);
-  EXPECT_EQ(one.run.id, other.run.id);
-  EXPECT_EQ(one.run.sum, other.run.sum);
-  EXPECT_EQ(one.run.series, other.run.series);
-  EXPECT_EQ(one.run.ledger, other.run.ledger);
-  EXPECT_EQ(one.ledger, other.ledger);
-  const XdmfMesh mesh{4, 1, 4};
-  EXPECT_EQ(xdmf_text(mesh, one.frames), xdmf_text(mesh, other.frames));
-  EXPECT_EQ(one.state.names, other.state.names);
-  EXPECT_EQ(one.state.whole, other.state.whole);
-  EXPECT_EQ(one.state.real, other.state.real);
-  ASSERT_EQ(one.state.fields.size(), other.state.fields.size());
-  for (std::size_t i = 0; i < one.state.fields.size(); ++i)
-    EXPECT_EQ(one.state.fields[i].values, other.state.fields[i].values);
-}
-
 /// 65, one line that names the file.
 void expect_refused(const std::string& folder, const std::string& file, const std::string& what)
 {
@@ -103,7 +70,7 @@ TEST(Checkpoint, IsReadBackToTheLastBit)
 {
   in_folder("checkpoint_back", [] {
     write_checkpoint("checkpoint_back", some(7));
-    expect_equal(read_checkpoint("checkpoint_back"), some(7));
+    EXPECT_TRUE(read_checkpoint("checkpoint_back") == some(7));
   });
 }
 
@@ -206,7 +173,7 @@ TEST(Checkpoint, ThatDoesNotFitLeavesTheOneBefore)
     }
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
-    expect_equal(read_checkpoint("checkpoint_full"), some(1));
+    EXPECT_TRUE(read_checkpoint("checkpoint_full") == some(1));
   });
 }
 
