@@ -7,6 +7,17 @@
 
 namespace trocar::constraint {
 
+Anchor anchor_of(const std::map<int, double>& weight)
+{
+  Anchor anchor;
+  anchor.weight.resize(static_cast<Eigen::Index>(weight.size()));
+  for (const auto& [node, w] : weight) {
+    anchor.weight[static_cast<Eigen::Index>(anchor.node.size())] = w;
+    anchor.node.push_back(node);
+  }
+  return anchor;
+}
+
 Row Row::between(TissueTerm tissue, int body, const std::vector<std::pair<int, double>>& jacobian)
 {
   Row row;

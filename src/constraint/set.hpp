@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ struct Anchor
     v("weight", "1", self.weight);
   }
 };
+
+/// An anchor of these nodes and weights.
+Anchor anchor_of(const std::map<int, double>& weight);
 
 /// Displacement of a material place in a direction: direction · u(anchor).
 struct TissueTerm

@@ -114,9 +114,18 @@ void add_needles(std::vector<OptionSpec>& t)
 
 void add_insertion(std::vector<OptionSpec>& t)
 {
-  t.push_back(choice("insertion_placement", "crossings", {"crossings", "spacing"},
-                     "coupling points where the path crosses faces, or at a spacing"));
-  t.push_back(positive("insertion_spacing", "0.005", "m", "distance for placement spacing"));
+  t.push_back(choice("insertion_placement", "crossings", {"crossings", "spacing", "line"},
+                     "coupling points where the path crosses faces, or at a spacing; or means "
+                     "along the line, which converge (docs/line.md)"));
+  t.push_back(positive("insertion_spacing", "0.005", "m",
+                       "distance for placement spacing; for placement line, where it is given, "
+                       "that of the grid"));
+  t.push_back(not_negative("insertion_line_kappa", "0", "1",
+                           "distance of the grid of placement line, in edges; 0 = 1.4 with linear "
+                           "elements, 0.8 with quadratic ones"));
+  t.push_back(not_negative("insertion_line_ring", "0", "1",
+                           "least radius of the ring around the shaft, in edges; 0 = 0.35 with "
+                           "linear elements, 0.25 with quadratic ones"));
   t.push_back({"insertion_merge", OptionType::real, "0.3", "1",
                "crossings closer than this part of the local edge are merged, 0 = raw", 0.0, 1.0,
                false, true});

@@ -9,6 +9,7 @@
 #include "driver/boundary_options.hpp"
 #include "driver/cavity_options.hpp"
 #include "driver/compliance_options.hpp"
+#include "driver/insertion_options.hpp"
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
 #include "driver/restart.hpp"
@@ -84,52 +85,6 @@ tissue::TissueSettings read_tissue(Options& options, std::vector<tissue::Materia
       options.text("tissue_mass") == "lumped" ? tissue::Mass::lumped : tissue::Mass::consistent;
   settings.materials = std::move(materials);
   settings.boundary = read_boundary(options, mesh, comm);
-  return settings;
-}
-
-insertion::TissueFriction read_friction(Options& options, const std::string& volume)
-{
-  const std::string at = "insertion_<volume>_friction_";
-  const auto withdraw = [&](const std::string& kind, double advance) {
-    const double own = options.real(at + kind + "_withdraw", volume);
-    if (own < 0.0 && own != -1.0)
-      throw core::option_error("option -insertion_friction_" + kind +
-                               "_withdraw: must be -1 (as on the advance) or not negative");
-    return own < 0.0 ? advance : own;
-  };
-  insertion::TissueFriction friction;
-  friction.advance = {options.real(at + "static", volume), options.real(at + "dynamic", volume),
-                      options.real(at + "viscous", volume)};
-  friction.withdraw = {withdraw("static", friction.advance.static_limit),
-                       withdraw("dynamic", friction.advance.dynamic_limit),
-                       withdraw("viscous", friction.advance.viscous)};
-  return friction;
-}
-
-insertion::InsertionSettings read_insertion(Options& options, const mesh::Mesh& mesh)
-{
-  insertion::InsertionSettings settings;
-  settings.placement.placement = options.text("insertion_placement") == "spacing"
-                                     ? insertion::Placement::spacing
-                                     : insertion::Placement::crossings;
-  settings.placement.spacing = options.real("insertion_spacing");
-  settings.placement.merge = options.real("insertion_merge");
-  for (const std::string& volume : mesh.volumes)
-    settings.friction.push_back(read_friction(options, volume));
-  settings.eta = options.real("insertion_eta");
-  const std::string puncture = "insertion_<volume>_puncture_force";
-  for (const std::string& volume : mesh.volumes) {
-    settings.puncture.volume.push_back(options.real(puncture, volume));
-    settings.tip.cutting.push_back(options.real("insertion_<volume>_cutting_force", volume));
-  }
-  for (const mesh::SurfaceGroup& surface : mesh.surfaces)
-    settings.puncture.surface.push_back(
-        options.given_for(puncture, surface.name) ? options.real(puncture, surface.name) : -1.0);
-  settings.tip.radius = options.real("insertion_tip_radius");
-  settings.tip.friction = options.real("insertion_tip_friction");
-  // A smaller slip is only round-off of the tissue's equilibrium, however exactly the laws are met.
-  constexpr double least_slip = 1e-9;  // [m]
-  settings.stick_tolerance = std::max(options.real("constraint_tolerance"), least_slip);
   return settings;
 }
 
@@ -233,15 +188,6 @@ void add_needles(Options& options, Scenario& scenario, const base::Comm& comm)
     scenario.tissue.ordered_last = planned_nodes(scenario.needles, scenario.mesh, locator, layers);
 }
 
-void add_radius_correction(Scenario& scenario)
-{
-  insertion::RadiusCorrection& correction = scenario.insertion.radius_correction.emplace();
-  correction.fit = insertion::radius_fit(
-      scenario.mesh.quadratic(), scenario.tissue.dilatation != tissue::Dilatation::pointwise);
-  for (const needle::NeedleSettings& needle : scenario.needles)
-    correction.radius.push_back(needle.section.outer);
-}
-
 }  // namespace
 
 Scenario read_scenario(Options& options, const base::Comm& comm)
@@ -269,6 +215,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   read_compliance(options, scenario);
   add_needles(options, scenario, comm);
   if (options.flag("insertion_radius_correction")) add_radius_correction(scenario);
+  scenario.insertion.line.dilatation = dilatation;
   read_cavities(options, scenario, comm);
   options.refuse_unread();
   check_scenario(scenario);

@@ -52,7 +52,8 @@ void refuse_crowded(const Scenario& scenario)
 {
   constexpr double most_points = 1e5;
   const insertion::PlacementSettings& placement = scenario.insertion.placement;
-  if (placement.placement != insertion::Placement::spacing) return;
+  const bool along_line = scenario.insertion.line.spacing > 0.0;
+  if (placement.placement != insertion::Placement::spacing && !along_line) return;
   for (const needle::NeedleSettings& needle : scenario.needles)
     if (needle.motion.length > most_points * placement.spacing)
       throw core::option_error("option -insertion_spacing: " + core::shown(placement.spacing) +
@@ -61,8 +62,25 @@ void refuse_crowded(const Scenario& scenario)
                                " points on needle '" + needle.name + "', more than 1e5");
 }
 
+/// Warns of a grid along the line that is so fine that forces alternate from node to node.
+void add_line_warnings(Scenario& scenario)
+{
+  constexpr double least_kappa = 0.3, least_of_radius = 0.1;
+  const insertion::LineSettings& line = scenario.insertion.line;
+  if (scenario.insertion.placement.placement != insertion::Placement::line) return;
+  if (line.kappa < least_kappa)
+    scenario.warnings.push_back("-insertion_line_kappa " + core::shown(line.kappa) +
+                                ": below 0.3 the forces along the line alternate");
+  for (const needle::NeedleSettings& needle : scenario.needles)
+    if (line.spacing > 0.0 && line.spacing < least_of_radius * needle.section.outer)
+      scenario.warnings.push_back("-insertion_spacing " + core::shown(line.spacing) +
+                                  " m is less than a tenth of the radius of needle '" +
+                                  needle.name + "': the forces along the line alternate");
+}
+
 void add_warnings(Scenario& scenario)
 {
+  add_line_warnings(scenario);
   const step::TimeSettings& time = scenario.time;
   if (time.step != time.asked)
     scenario.warnings.push_back("-time_end " + core::shown(time.end) +

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/failure.hpp"
+#include "insertion/line_points.hpp"
 #include "insertion/tip_events.hpp"
 
 namespace trocar::insertion {
@@ -15,29 +16,28 @@ bool passed(const mesh::Mesh& mesh, const InsertionState& state, std::size_t sit
   return arc > 0.0 && place.arc <= arc + arc_tolerance(mesh, place.tet);
 }
 
-void drop_points_ahead(const mesh::Mesh& mesh, InsertionState& state, double arc)
+}  // namespace
+
+void hold_behind(const Ground& ground, InsertionState& state, double arc,
+                 const needle::Shaft& shaft)
 {
+  // The tip passed within this step what is newly held. That counts as having slipped for the whole
+  // step: its friction acts at once, and the force has no dent where points are born.
+  const double old_arc = std::max(state.tip_arc, 0.0);
+  if (ground.along_line())
+    return hold_line_behind(ground, state, arc, shaft.length - old_arc, shaft.radius);
+  const mesh::Mesh& mesh = ground.mesh;
   while (!state.points.empty() &&
          !passed(mesh, state, static_cast<std::size_t>(state.points.back().site), arc))
     state.points.pop_back();
-}
-
-}  // namespace
-
-void add_points_behind(const mesh::Mesh& mesh, InsertionState& state, double arc,
-                       double needle_length)
-{
-  const double old_arc = std::max(state.tip_arc, 0.0);
   state.tip_arc = arc;
   while (state.points.size() < state.path.sites.size() &&
          passed(mesh, state, state.points.size(), arc)) {
     CouplingPoint point;
     point.site = static_cast<int>(state.points.size());
     point.stuck = false;
-    // The tip passed the site within this step. The point counts as having slipped for the whole
-    // step: its friction acts at once, and the force has no dent where points are born.
     const double site_arc = state.path.sites[state.points.size()].arc;
-    point.needle_arc = needle_length + (site_arc - old_arc);
+    point.needle_arc = shaft.length + (site_arc - old_arc);
     state.points.push_back(point);
   }
 }
@@ -55,11 +55,11 @@ InsertionState start(const Ground& ground, const needle::Needle& needle)
                            "': the inserted part lies outside the tissue (check -needle_entry, "
                            "-needle_direction and -needle_inserted)");
   state.phase = Phase::inserted;
-  add_points_behind(ground.mesh, state, state.path.length(), 0.0);
+  const needle::Shaft shaft = needle.initial().shaft;
+  hold_behind(ground, state, state.path.length(), shaft);
   for (CouplingPoint& point : state.points) point.stuck = true;
   const fem::GlobalField undeformed{core::VecX::Zero(3 * ground.mesh.node_count())};
   const Deformed tissue(ground.mesh, ground.locator, undeformed);
-  const needle::Shaft shaft = needle.initial().shaft;
   for (CouplingPoint& point : state.points) {
     const Site& site = state.path.sites[static_cast<std::size_t>(point.site)];
     point.needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
@@ -89,11 +89,12 @@ InsertionState enter(const Ground& ground, const InsertionState& old,
                      ? *inside
                      : tissue.reference_place_continued(predicted.tip(), entries.front().last_tet);
   grow(next.path, entry, ground.mesh, ground.locator, ground.settings.placement);
-  grow_to(ground, next, X);
+  const int first = ground.locator.tet_at(entry);
+  grow_to(ground, next, passed_place(ground, next, X, first, predicted));
   if (first_tet(next.path) < 0) return old;
   next.phase = Phase::inserted;
   press(ground, next, next.path.length(), predicted, tissue);
-  add_points_behind(ground.mesh, next, next.path.length(), predicted.length);
+  hold_behind(ground, next, next.path.length(), predicted);
   return next;
 }
 
@@ -105,7 +106,8 @@ InsertionState advance(const Ground& ground, const InsertionState& old,
   if (old.phase == Phase::contact) return old;  // `settle_tip` decides after the solve
   if (first_tet(old.path) < 0) return enter(ground, old, predicted, tissue);
 
-  const Vec3 tip = predicted.tip() + lead(old, predicted, tissue);
+  const Vec3 tip =
+      predicted.tip() + lead(old, predicted, tissue) - hidden_motion_at_tip(ground, old, predicted);
   const auto inside = tissue.reference_place(tip, old.path.vertex.back());
   if (old.phase == Phase::withdrawn) {
     if (!inside) return old;
@@ -118,9 +120,13 @@ InsertionState advance(const Ground& ground, const InsertionState& old,
   // have left the tissue at either end.
   const bool behind = old.tip_arc <= 0.5 * old.path.length();
   const int end_tet = behind ? first_tet(old.path) : last_tet(old.path);
-  const Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
+  Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
   InsertionState next = old;
   double arc = arc_nearest(next.path, X);
+  if (ground.along_line() && arc > old.tip_arc && old.tip_arc > 0.0) {
+    X = passed_place(ground, old, X, end_tet, predicted);
+    arc = arc_nearest(next.path, X);
+  }
   const double tolerance = arc_tolerance(ground.mesh, end_tet);
   if (std::abs(arc - old.tip_arc) > tolerance) next.withdrawing = arc < old.tip_arc;
   if (arc > next.path.length() + 1e-3 * tolerance) {
@@ -133,8 +139,7 @@ InsertionState advance(const Ground& ground, const InsertionState& old,
   press(ground, next, arc, predicted, tissue);
   if (next.tip.pressed) arc = next.path.length();
   next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;
-  drop_points_ahead(ground.mesh, next, arc);
-  add_points_behind(ground.mesh, next, arc, predicted.length);
+  hold_behind(ground, next, arc, predicted);
   return next;
 }
 

@@ -27,9 +27,9 @@ bool off_channel(const Ground& ground, const InsertionState& state, const needle
 /// Depth: length of the inserted path that lies in tissue [m].
 double depth(const InsertionState& state);
 
-/// Moves the tip to `arc` on the path [m] and adds a coupling point at every site passed.
-/// `needle_length`: arc length of the tip on the needle [m].
-void add_points_behind(const mesh::Mesh& mesh, InsertionState& state, double arc,
-                       double needle_length);
+/// Moves the tip to `arc` on the path [m]: drops coupling points ahead of it and adds those that
+/// it has passed.
+void hold_behind(const Ground& ground, InsertionState& state, double arc,
+                 const needle::Shaft& shaft);
 
 }  // namespace trocar::insertion

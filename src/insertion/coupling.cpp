@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "insertion/line_points.hpp"
+#include "insertion/line_rows.hpp"
 #include "insertion/tip_events.hpp"
 
-// Makes the rows that couple one needle to the tissue, and takes their multipliers back.
+// Makes the rows that couple one needle to the tissue.
 namespace trocar::insertion {
 
 core::MatX tributary_lengths(const mesh::Mesh& mesh, const InsertionState& state)
@@ -13,6 +15,7 @@ core::MatX tributary_lengths(const mesh::Mesh& mesh, const InsertionState& state
   const auto points = static_cast<Eigen::Index>(state.points.size());
   core::MatX length = core::MatX::Zero(points, static_cast<Eigen::Index>(mesh.volumes.size()));
   if (points == 0) return length;
+  if (!state.path.line.nodes.empty()) return lengths_of_hats(mesh, state);
   const auto arc_of = [&](Eigen::Index k) {
     const int site = state.points[static_cast<std::size_t>(k)].site;
     return state.path.sites[static_cast<std::size_t>(site)].arc;
@@ -146,19 +149,11 @@ int add_lateral_rows(const Hold& hold, double compliance, const Vec3& start, int
   return first;
 }
 
-/// Adds one axial row for dry friction and one for a dashpot. `dashpot`: compliance h/b of the
-/// dashpot [m/N], 0: none. `compliance`: that of the tissue next to the shaft [m/N].
-void add_friction_rows(double dashpot, constraint::Row row, double compliance, PointRows& mine,
-                       constraint::Set& set)
+/// Lets the tissue next to the shaft yield to the sum of the forces of both axial rows, which load
+/// the same piece of shaft. `compliance`: of this tissue [m/N].
+void soften(const PointRows& mine, double compliance, constraint::Set& set)
 {
-  if (dashpot > 0.0) {
-    row.compliance = dashpot;
-    mine.viscous = set.add(row, law::Law::zero(), mine.point);
-    row.compliance = 0.0;
-  }
-  if (mine.bound > 0.0) mine.axial = set.add(row, law::Law::box(mine.bound), mine.point);
   if (!(compliance > 0.0)) return;
-  // Both rows load the same piece of shaft: the tissue next to it yields to the sum of both forces.
   for (int row_of_law : {mine.viscous, mine.axial})
     if (row_of_law >= 0) set.couplings().push_back({row_of_law, row_of_law, compliance});
   if (mine.viscous >= 0 && mine.axial >= 0)
@@ -169,6 +164,7 @@ PointRows add_point_rows(const Ground& ground, const PointOnPath& one, const Ite
                          constraint::Set& set)
 {
   PointRows mine;
+  mine.from = one.point.site;
   mine.point = set.next_point();
   const Hold hold(one.site.anchor, at);
   if (one.lateral)
@@ -187,8 +183,9 @@ PointRows add_point_rows(const Ground& ground, const PointOnPath& one, const Ite
   const Friction& friction = one.friction;
   mine.bound = one.point.stuck ? friction.static_limit : friction.dynamic_limit;
   const double compliance = radius_compliance(ground, one.site, at.body, one.length).axial;
-  add_friction_rows(friction.viscous > 0.0 ? at.h / friction.viscous : 0.0, std::move(row),
-                    compliance, mine, set);
+  add_friction_rows(friction.viscous > 0.0 ? at.h / friction.viscous : 0.0, std::move(row), mine,
+                    set);
+  soften(mine, compliance, set);
   return mine;
 }
 
@@ -226,67 +223,44 @@ int add_lever_rows(const Ground& ground, const InsertionState& state, const Iter
   return add_lateral_rows(Hold(tip->anchor, at), compliance, Vec3::Zero(), set.next_point(), set);
 }
 
-}  // namespace
-
-CouplingRows add_rows(const Ground& ground, const InsertionState& state, const Iterate& at,
-                      constraint::Set& set)
+/// Rows of single points on the path.
+void add_rows_of_points(const Ground& ground, const InsertionState& state, const Iterate& at,
+                        CouplingRows& rows, constraint::Set& set)
 {
-  CouplingRows rows;
   int lateral = 0;
   for (const PointOnPath& one : points_on_path(ground, state)) {
     rows.points.push_back(add_point_rows(ground, one, at, set));
     lateral += one.lateral ? 1 : 0;
   }
   if (lateral == 1) rows.lever = add_lever_rows(ground, state, at, set);
+}
+
+}  // namespace
+
+void add_friction_rows(double dashpot, constraint::Row row, PointRows& rows, constraint::Set& set)
+{
+  if (dashpot > 0.0) {
+    row.compliance = dashpot;
+    rows.viscous = set.add(row, law::Law::zero(), rows.point);
+    row.compliance = 0.0;
+  }
+  if (rows.bound > 0.0) rows.axial = set.add(row, law::Law::box(rows.bound), rows.point);
+}
+
+CouplingRows add_rows(const Ground& ground, const InsertionState& state, const Iterate& at,
+                      constraint::Set& set)
+{
+  CouplingRows rows;
+  if (ground.along_line())
+    rows.points = add_line_rows(ground, state, at, set);
+  else
+    add_rows_of_points(ground, state, at, rows, set);
   if (state.tip.pressed) {
     const TipLaw law{state.phase == Phase::contact, resistance(ground, state),
                      ground.settings.tip.friction};
     rows.tip = add_tip_rows(state.tip, law, at, set);
   }
   return rows;
-}
-
-namespace {
-
-void accept_point(double tolerance, CouplingPoint& point, const PointRows& rows,
-                  const law::Multipliers& multipliers, CouplingReport& report)
-{
-  point.lambda.setZero();
-  if (rows.first >= 0) point.lambda.head<2>() = multipliers.lambda.segment<2>(rows.first);
-  for (int row : {rows.axial, rows.viscous}) {
-    if (row < 0) continue;
-    point.lambda[2] += multipliers.lambda[row];
-    report.friction_work += multipliers.lambda[row] * multipliers.delta[row];
-  }
-  report.shaft_friction += point.lambda[2];
-  const int axial = std::max(rows.axial, rows.viscous);  // both rows have the same slip
-  // A point without axial row slips freely, by its whole axial gap.
-  const double slip = axial < 0 ? rows.slid : multipliers.delta[axial];
-  // A point below its friction bound sticks, even if the solver's tolerance left it a gap.
-  const bool inside = rows.axial >= 0 && rows.bound > 0.0 &&
-                      std::abs(multipliers.lambda[rows.axial]) < rows.bound * (1.0 - 1e-9);
-  point.stuck = inside || std::abs(slip) <= tolerance;
-  if (!point.stuck) point.needle_arc += slip;
-}
-
-}  // namespace
-
-CouplingReport accept(const Ground& ground, InsertionState& state, const CouplingRows& rows,
-                      const law::Multipliers& multipliers)
-{
-  const double tolerance = ground.settings.stick_tolerance;
-  CouplingReport report;
-  for (std::size_t k = 0; k < rows.points.size(); ++k)
-    accept_point(tolerance, state.points[k], rows.points[k], multipliers, report);
-  if (rows.tip.axial < 0) return report;
-  report.tip = accept_tip(state.tip, rows.tip, multipliers, tolerance);
-  report.tip_force = state.tip.lambda[2];
-  report.tip_gap = multipliers.delta[rows.tip.axial];
-  report.cutting_work = report.tip_force * report.tip_gap;
-  if (rows.tip.lateral >= 0)
-    report.friction_work += multipliers.lambda.segment<2>(rows.tip.lateral)
-                                .dot(multipliers.delta.segment<2>(rows.tip.lateral));
-  return report;
 }
 
 }  // namespace trocar::insertion

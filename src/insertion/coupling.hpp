@@ -8,9 +8,15 @@
 
 namespace trocar::insertion {
 
-/// Row numbers of a coupling point in a set, its friction bound and its axial gap.
+/// Row numbers of a coupling point in a set, its friction bound and its axial gap. Along a line
+/// neighbouring points may share their rows.
 struct PointRows
 {
+  int from = 0;                    ///< index of the (first) point
+  std::vector<double> share{1.0};  ///< of every point in the forces
+  /// Axial gap of every point less that of all, which slip takes away: points that share their rows
+  /// slip together.
+  std::vector<double> apart{0.0};
   int first = -1;      ///< first of two lateral rows, -1 when there is none
   int axial = -1;      ///< row of the box law or of the η law, -1 when there is none
   int viscous = -1;    ///< row of the dashpot, -1 when there is none
@@ -38,6 +44,10 @@ struct CouplingReport
   double cutting_work = 0.0;           ///< λ δ of the tip's axial row [J], <= 0
   TipOutcome tip = TipOutcome::holds;  ///< any other outcome: call `settle_tip`
 };
+
+/// Adds one axial row for dry friction, where `rows.bound` is positive, and one for a dashpot, and
+/// writes down their numbers. `dashpot`: compliance h/b of the dashpot [m/N], 0: none.
+void add_friction_rows(double dashpot, constraint::Row row, PointRows& rows, constraint::Set& set);
 
 /// Adds the rows of one needle at an iterate to the set.
 CouplingRows add_rows(const Ground& ground, const InsertionState& state, const Iterate& at,

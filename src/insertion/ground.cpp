@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/topology.hpp"
+
 namespace trocar::insertion {
 
 Ground::Ground(const mesh::Mesh& mesh_of, const mesh::Locator& locator_of,
@@ -17,17 +19,21 @@ Ground::Ground(const mesh::Mesh& mesh_of, const mesh::Locator& locator_of,
   const auto& forces = settings.tip.cutting;
   resists = membranes.any() ||
             std::any_of(forces.begin(), forces.end(), [](double f) { return f > 0.0; });
+  if (!along_line()) return;
+  edges.emplace(mesh);
+  int bodies = 0;
+  body_of_node = mesh::connected_components(mesh, bodies);
 }
 
 double Ground::cutting(int tet) const
 {
   if (tet < 0) return 0.0;
-  return settings.tip.cutting[static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)])];
+  return settings.tip.cutting[region(tet)];
 }
 
 const tissue::Material& Ground::material(int tet) const
 {
-  return materials[static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)])];
+  return materials[region(tet)];
 }
 
 double Ground::border(int from, int to, const Vec3& X) const

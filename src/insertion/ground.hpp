@@ -3,9 +3,11 @@
 #include <optional>
 #include <vector>
 
+#include "insertion/line.hpp"
 #include "insertion/membranes.hpp"
 #include "insertion/radius_correction.hpp"
 #include "insertion/tip.hpp"
+#include "mesh/smoothed_edges.hpp"
 
 namespace trocar::insertion {
 
@@ -15,12 +17,16 @@ struct Friction
   double static_limit = 0.0;   ///< bound F/ℓ of a point stuck at the start of the step [N/m]
   double dynamic_limit = 0.0;  ///< bound F/ℓ of a slipping point [N/m]
   double viscous = 0.0;        ///< b: force per length and slip velocity [N s/m²]
+
+  bool operator==(const Friction&) const = default;
 };
 
 /// Friction of one tissue while the needle advances and while it is withdrawn.
 struct TissueFriction
 {
   Friction advance, withdraw;
+
+  bool operator==(const TissueFriction&) const = default;
 };
 
 struct InsertionSettings
@@ -32,6 +38,7 @@ struct InsertionSettings
   TipSettings tip{};
   PunctureSettings puncture{};
   std::optional<RadiusCorrection> radius_correction{};
+  LineSettings line{};  ///< for `Placement::line`
 };
 
 /// What needles go into: the mesh with its resistance to tips and shafts. Borrows mesh and locator.
@@ -50,11 +57,25 @@ struct Ground
   /// too.
   double border(int from, int to, const Vec3& X) const;
 
+  std::size_t region(int tet) const  ///< index of the physical volume of a tet
+  {
+    return static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)]);
+  }
+  /// Number of the connected body that a tet belongs to. For `Placement::line` only.
+  int body(int tet) const
+  {
+    const auto corner = static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][0]);
+    return body_of_node[corner];
+  }
+  bool along_line() const { return settings.placement.placement == Placement::line; }
+
   const mesh::Mesh& mesh;
   const mesh::Locator& locator;
   InsertionSettings settings;
   std::vector<tissue::Material> materials;  ///< by physical volume of the mesh
   Membranes membranes;
+  std::optional<mesh::SmoothedEdges> edges;  ///< for `Placement::line`
+  std::vector<int> body_of_node;             ///< for `Placement::line`
   bool resists = false;  ///< some membrane or tissue of the mesh resists the tip
 };
 

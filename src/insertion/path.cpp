@@ -82,20 +82,9 @@ void add_pieces(Path& path, const std::vector<Passage>& passages,
   }
 }
 
-Site site_in(const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
-{
-  const mesh::TetNodes nodes = mesh::nodes_of(mesh, tet);
-  Site site{arc, tet, {{nodes.begin(), nodes.end()}, {}}};
-  Eigen::Vector4d at = mesh::local_coordinates(mesh::positions(mesh, tet), X);
-  for (int a = 0; a < 4; ++a)
-    if (at[a] < relative_tolerance) at[a] = 0.0;  // X is on the face: nodes off it get no weight
-  site.anchor.weight = mesh::node_weights(mesh, at / at.sum());
-  return site;
-}
-
 void add_site(Path& path, const mesh::Mesh& mesh, int tet, double arc, const Vec3& X)
 {
-  path.sites.push_back(site_in(mesh, tet, arc, X));
+  path.sites.push_back({arc, tet, anchor_at(mesh, tet, X)});
 }
 
 /// A place where a site may stand, 0 <= t <= 1: a crossing or, in a quadratic tet, the middle of
@@ -186,11 +175,40 @@ std::optional<Site> site_at(const Path& path, const mesh::Mesh& mesh, double arc
     if (piece.tet >= 0 && piece.begin < arc) in = &piece;
   if (!in) return std::nullopt;
   const double here = std::min(arc, in->end);
-  std::size_t i = 1;
-  while (i + 1 < path.arc.size() && path.arc[i] < here) ++i;
-  const double part = (here - path.arc[i - 1]) / (path.arc[i] - path.arc[i - 1]);
-  const Vec3 X = path.vertex[i - 1] + part * (path.vertex[i] - path.vertex[i - 1]);
-  return site_in(mesh, in->tet, here, X);
+  return Site{here, in->tet, anchor_at(mesh, in->tet, place_at(path, here))};
+}
+
+constraint::Anchor anchor_at(const mesh::Mesh& mesh, int tet, const Vec3& X)
+{
+  const mesh::TetNodes nodes = mesh::nodes_of(mesh, tet);
+  constraint::Anchor anchor{{nodes.begin(), nodes.end()}, {}};
+  Eigen::Vector4d at = mesh::local_coordinates(mesh::positions(mesh, tet), X);
+  for (int a = 0; a < 4; ++a)
+    if (at[a] < relative_tolerance) at[a] = 0.0;  // X is on the face: nodes off it get no weight
+  anchor.weight = mesh::node_weights(mesh, at / at.sum());
+  return anchor;
+}
+
+Vec3 place_at(const Path& path, double arc)
+{
+  const auto end = std::upper_bound(path.arc.begin() + 1, path.arc.end() - 1, arc);
+  const auto i = static_cast<std::size_t>(end - path.arc.begin());
+  const double part = (arc - path.arc[i - 1]) / (path.arc[i] - path.arc[i - 1]);
+  return path.vertex[i - 1] + part * (path.vertex[i] - path.vertex[i - 1]);
+}
+
+int tet_before(const Path& path, double arc)
+{
+  const auto at = std::lower_bound(path.pieces.begin(), path.pieces.end(), arc,
+                                   [](const Piece& piece, double s) { return piece.end < s; });
+  return at == path.pieces.end() ? -1 : at->tet;
+}
+
+int tet_after(const Path& path, double arc)
+{
+  const auto at = std::upper_bound(path.pieces.begin(), path.pieces.end(), arc,
+                                   [](double s, const Piece& piece) { return s < piece.end; });
+  return at == path.pieces.end() ? -1 : at->tet;
 }
 
 double tissue_length(const Path& path, double arc)

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "constraint/set.hpp"
+#include "insertion/line.hpp"
 #include "mesh/locator.hpp"
 
 namespace trocar::insertion {
 
 using core::Vec3;
 
-enum class Placement { crossings, spacing };
+enum class Placement { crossings, spacing, line };
 
 struct PlacementSettings
 {
@@ -63,6 +64,7 @@ struct Path
   std::vector<Piece> pieces;      ///< in order, covering 0 .. length()
   std::vector<double> crossings;  ///< arcs of all face crossings, before merging [m]
   std::vector<Site> sites;        ///< in order of arc
+  Line line;                      ///< for `Placement::line`; a site belongs to every node then
   int first_id = 0;               ///< number of sites[0]; a new channel continues the numbering
 
   bool empty() const { return vertex.empty(); }
@@ -77,6 +79,7 @@ struct Path
     v("piece", "", self.pieces);
     v("crossing", "m", self.crossings);
     v("site", "", self.sites);
+    v("line", "", self.line);
     v("first_id", "1", self.first_id);
   }
 };
@@ -91,6 +94,18 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
 /// The material place on the path at `arc` [m]. Where the path lies outside the tissue there, the
 /// last place before `arc` that lies in tissue; nothing when there is none.
 std::optional<Site> site_at(const Path& path, const mesh::Mesh& mesh, double arc);
+
+/// Weights of the nodes of a tet at the place X in it. Nodes off a face that X lies on get no
+/// weight.
+constraint::Anchor anchor_at(const mesh::Mesh& mesh, int tet, const Vec3& X);
+
+/// The place on the path at `arc`, between 0 and its length [m].
+Vec3 place_at(const Path& path, double arc);
+
+/// Tet of the piece that ends at `arc` or contains it, and of the piece that begins there or
+/// contains it; -1: none.
+int tet_before(const Path& path, double arc);
+int tet_after(const Path& path, double arc);
 
 /// Length of the path up to `arc` that lies in tissue [m].
 double tissue_length(const Path& path, double arc);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "insertion/channel.hpp"
+#include "insertion/line_points.hpp"
 #include "mesh/quadratic.hpp"
 
 namespace trocar::insertion {
@@ -174,7 +175,8 @@ Vec3 reference_of(const Vec3& tip, const InsertionState& state, const Deformed& 
 void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
               const needle::Shaft& shaft, const Deformed& tissue)
 {
-  const Vec3 X = reference_of(tip, state, tissue);
+  const Vec3 X =
+      passed_place(ground, state, reference_of(tip, state, tissue), state.tip.tet, shaft);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
   if (state.tip.threshold > 0.0) {
     ++state.tip.punctures;
@@ -192,9 +194,11 @@ void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
     if (state.tip.threshold > 0.0)
       state.tip.offset += std::max(tangent.dot(tip - end), 0.0) * tangent;
   }
-  state.tip_arc = state.path.length();
+  if (ground.along_line())  // the step is over: the tip of the needle is at the end of the path
+    return hold_line_behind(ground, state, state.path.length(), shaft.length - state.path.length(),
+                            shaft.radius);
   const std::size_t known = state.points.size();
-  add_points_behind(ground.mesh, state, state.path.length(), shaft.length);
+  hold_behind(ground, state, state.path.length(), shaft);
   // The step is over, so the projection of a new point on the shaft gives its needle_arc. Under
   // load this is a little ahead of the value computed from arcs on the path.
   for (std::size_t k = known; k < state.points.size(); ++k) {
@@ -219,7 +223,7 @@ void settle_tip(const Ground& ground, InsertionState& state, const CouplingRepor
   }
   // On a surface the channel begins where the axis meets it and is as deep as the tip's row
   // advanced. Elsewhere the channel ends at the tip.
-  Vec3 tip = shaft.tip() + lead(state, shaft, tissue);
+  Vec3 tip = shaft.tip() + lead(state, shaft, tissue) - hidden_motion_at_tip(ground, state, shaft);
   if (on_surface)
     tip = tissue.place(state.path.vertex.back(), state.tip.tet) - report.tip_gap * tangent;
   state.tip.pressed = false;

@@ -23,6 +23,7 @@ Shaft Needle::straight(const Pose& base) const
 {
   Shaft shaft;
   shaft.length = settings_.motion.length;
+  shaft.radius = settings_.section.outer;
   shaft.bevel = settings_.bevel;
   for (int i = 0; i <= settings_.elements; ++i) {
     shaft.x.push_back(base.x + i * shaft.length / settings_.elements * base.R.col(0));

@@ -15,6 +15,7 @@ using core::Vec3;
 struct Shaft
 {
   double length = 0.0;  ///< length at rest [m]
+  double radius = 0.0;  ///< outer radius [m]
   std::vector<Vec3> x;  ///< positions of the nodes from base to tip [m]
   std::vector<Mat3> R;  ///< frames of the nodes
   /// cot ψ, the ratio of lateral to axial force on the tip's face; 0: symmetric tip. The lateral
@@ -30,6 +31,7 @@ struct Shaft
   static void visit(Self& self, Visitor& v)
   {
     v("length", "m", self.length);
+    v("radius", "m", self.radius);
     v("node", "m", self.x);
     v("frame", "1", self.R);
     v("bevel", "1", self.bevel);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/visit.hpp"
+#include "step/state_indices.hpp"
 
 namespace trocar::step {
 namespace {
@@ -216,43 +217,6 @@ class Reader
   const fem::Space* space_;
   std::size_t name_ = 0, whole_ = 0, real_ = 0, field_ = 0;
 };
-
-/// Throws Failure (65) when an index into the mesh or a list is out of range, or when lists that
-/// belong together differ in length. Users of a state do not check this.
-void refuse_indices_of_nothing(const State& state, const fem::Space& space)
-{
-  const auto among = [](int index, int lowest, std::size_t count) {
-    if (index < lowest || index >= static_cast<int>(count))
-      throw core::data_error("an index of it is that of nothing");
-  };
-  const auto tets = static_cast<std::size_t>(space.tets_of_mesh());
-  const auto nodes = static_cast<std::size_t>(space.global());
-  const auto sound = [&](const constraint::Anchor& anchor) {
-    for (int node : anchor.node) among(node, 0, nodes);
-    if (anchor.weight.size() != static_cast<Eigen::Index>(anchor.node.size()))
-      throw core::data_error("a place of it has not as many weights as nodes");
-  };
-  for (const needle::NeedleState& one : state.needles) {
-    const std::size_t size = one.shaft.x.size();
-    if (size < 2 || one.shaft.R.size() != size || one.v.size() != size || one.w.size() != size)
-      throw core::data_error("a needle of it has no such nodes");
-  }
-  for (const insertion::InsertionState& one : state.insertions) {
-    among(static_cast<int>(one.phase), 0,
-          static_cast<std::size_t>(insertion::Phase::withdrawn) + 1);
-    for (const insertion::Piece& piece : one.path.pieces) among(piece.tet, -1, tets);
-    for (const insertion::Site& site : one.path.sites) {
-      among(site.tet, 0, tets);
-      sound(site.anchor);
-    }
-    for (const insertion::CouplingPoint& point : one.points)
-      among(point.site, 0, one.path.sites.size());
-    among(one.tip.tet, -1, tets);
-    sound(one.tip.hold);
-    if (one.path.vertex.size() != one.path.arc.size())
-      throw core::data_error("a path of it has not as many lengths as corners");
-  }
-}
 
 }  // namespace
 

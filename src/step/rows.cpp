@@ -50,13 +50,30 @@ double closed_gap(const Model& model)
 
 }  // namespace
 
+namespace {
+
+/// What the couplings between rows of needles add to their gaps under λ [m].
+core::VecX yielded(const constraint::Set& set, const core::VecX& lambda)
+{
+  core::VecX gap = core::VecX::Zero(set.size());
+  for (const constraint::Set::Coupling& c : set.couplings()) {
+    if (set.rows()[static_cast<std::size_t>(c.i)].body < 0) continue;
+    gap[c.i] += c.compliance * lambda[c.j];
+    if (c.i != c.j) gap[c.j] += c.compliance * lambda[c.i];
+  }
+  return gap;
+}
+
+}  // namespace
+
 bool gaps_closed(const Model& model, const Solution& solution, const Rows& here)
 {
+  const core::VecX soft = yielded(here.set, solution.lambda());
   for (const law::Block& block : here.set.blocks()) {
     const constraint::Row& row = here.set.rows()[static_cast<std::size_t>(block.first)];
     const bool hard = block.law.set == law::Law::Set::zero && row.compliance == 0.0 &&
                       row.relative_compliance == 0.0 && solution.mobility[block.first] > 0.0;
-    if (hard && std::abs(row.gap) > closed_gap(model)) return false;
+    if (hard && std::abs(row.gap + soft[block.first]) > closed_gap(model)) return false;
   }
   return true;
 }
@@ -92,6 +109,7 @@ double left_across(const Model& model, const Scheme& scheme, const State& state,
   for (std::size_t i = 0; i < model.needles.size(); ++i)
     d.push_back(next_increment(model, scheme, state, solution, i));
   const core::VecX& lambda = solution.lambda();
+  const core::VecX soft = yielded(here.set, lambda);
   std::vector<double> largest(model.needles.size(), 0.0), change = largest;  // by needle [N]
   for (const law::Block& block : here.set.blocks()) {
     const int i = block.first;
@@ -100,7 +118,7 @@ double left_across(const Model& model, const Scheme& scheme, const State& state,
                         row.relative_compliance == 0.0 && solution.mobility[i] > 0.0;
     if (!across) continue;
     const auto b = static_cast<std::size_t>(row.body);
-    double gap = row.gap + row.compliance * lambda[i];
+    double gap = row.gap + row.compliance * lambda[i] + soft[i];
     for (const auto& [dof, coefficient] : row.on_body) gap -= coefficient * d[b][dof];
     const double open = std::max(std::abs(gap) - closed_gap(model), 0.0);
     largest[b] = std::max(largest[b], std::abs(lambda[i]));

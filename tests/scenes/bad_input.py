@@ -105,6 +105,16 @@ refuses("CSV that never comes near", 65, ["never meets"],
 refuses("entry inside with a CSV", 65, ["start inside"],
         {"-needle_trajectory": written("deep.csv", "time,x,y,z\n0,-0.05,0.02,0.02\n"),
          "-needle_entry": "0.03,0.02,0.02"})
+line = {"-insertion_placement": "line"}
+refuses("merging along a line", 64, ["-insertion_merge", "line"], {**line, "-insertion_merge": "0.1"})
+refuses("radius correction along a line", 64, ["-insertion_radius_correction", "line"],
+        {**line, "-insertion_radius_correction": ""})
+refuses("grid of no line", 64, ["-insertion_line_kappa", "line"], {"-insertion_line_kappa": "1"})
+refuses("ring of no line", 64, ["-insertion_line_ring", "line"], {"-insertion_line_ring": "1"})
+refuses("crowded line", 64, ["-insertion_spacing", "1e5"], {**line, "-insertion_spacing": "1e-9"})
+for fine in ({"-insertion_line_kappa": "0.2"}, {"-insertion_spacing": "1e-5"}):
+    process = run({**small, **line, **fine, "-time_end": "0.1", "-output_dir": os.path.join(FOLDER, "fine")})
+    check(process.returncode in (0, 70) and "alternate" in process.stdout + process.stderr, f"said of {fine}")
 refuses("dashpots without time", 64, ["-insertion_friction_viscous"],
         {"-analysis": "static", "-time_end": "0", "-insertion_friction_viscous": "1"})
 refuses("negative withdrawal friction", 64, ["_withdraw"], {"-insertion_friction_static_withdraw": "-0.5"})

@@ -50,7 +50,7 @@ def step_by_step(what, settings):
 
 SHIPPED = {"small_insertion": 200, "gel_insertion": 224, "layers": 450, "bladder_puncture": 400, "close_points": 100,
            "compression_test": 5, "force_profile": 523, "gravity_sag": 50, "phantom": 3, "pulsing_vessel": 125,
-           "sideways": 50, "steering": 210, "two_laws": 5, "branch": 100}
+           "sideways": 50, "line_insertion": 224, "steering": 210, "two_laws": 5, "branch": 100}
 
 if LONG:
     for name, steps in SHIPPED.items():

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "support/scene.hpp"
 
 namespace trocar {
@@ -9,13 +12,21 @@ using core::Vec3;
 using test::distorted;
 using test::plain;
 
+using insertion::Placement;
+const std::vector<std::pair<needle::Model, Placement>> ways{
+    {needle::Model::rigid, Placement::crossings},
+    {needle::Model::beam, Placement::crossings},
+    {needle::Model::rigid, Placement::line},
+    {needle::Model::beam, Placement::line}};
+
 // What the holder puts in is what the tissue feels. The tissue's side is taken from its own
 // unbalanced nodal forces, which only the rows can balance.
 TEST(Balance, ActionEqualsReaction)
 {
-  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+  for (const auto& [model, placement] : ways) {
     step::Scene scenario = test::needle_scenario(distorted);
     scenario.needles[0].model = model;
+    scenario.insertion.placement.placement = placement;
     const base::Comm comm(MPI_COMM_WORLD);
     step::Model simulation(scenario, comm);
     step::State state = step::initial_state(simulation)->state;
@@ -41,9 +52,10 @@ TEST(Balance, ActionEqualsReaction)
 // The same in an iterated static state of a corotational body under its weight.
 TEST(Balance, ActionEqualsReactionInEquilibrium)
 {
-  for (needle::Model model : {needle::Model::rigid, needle::Model::beam}) {
+  for (const auto& [model, placement] : ways) {
     step::Scene scenario = test::needle_scenario(distorted);
     scenario.needles[0].model = model;
+    scenario.insertion.placement.placement = placement;
     scenario.time.is_static = true;
     scenario.tissue.model = tissue::Model::corotational;
     scenario.tissue.boundary.gravity = Vec3(0, 0, -9.81);

@@ -25,7 +25,8 @@ TEST(Friction, IsTauTimesDepthWheneverEverythingSlips)
     for (const insertion::PlacementSettings& placement : {insertion::PlacementSettings{},
                                                           {Placement::crossings, 0.005, 0.0},
                                                           {Placement::spacing, 0.0047, 0.3},
-                                                          {Placement::spacing, 0.012, 0.3}}) {
+                                                          {Placement::spacing, 0.012, 0.3},
+                                                          {Placement::line}}) {
       step::Scene scenario = test::needle_scenario(shape);
       scenario.insertion.placement = placement;
       // One step advances 0.5 mm; τ ℓ W_kk is about 1 N/m * 0.01 m * 3e-3 m/N = 3e-5 m.

@@ -124,6 +124,15 @@ TEST(RestartOf, EveryKindOfStep)
          s.insertion.placement.placement = insertion::Placement::spacing;
          s.insertion.placement.spacing = 0.002;
        }},
+      {"along a line",
+       [](Scene& s) { s.insertion.placement.placement = insertion::Placement::line; }},
+      {"along a line, drawn back",
+       [](Scene& s) {
+         s.insertion.placement.placement = insertion::Placement::line;
+         s.insertion.friction = test::same({5.0, 3.0, 20.0});
+         s.needles[0].motion.depth = 0.009;
+         s.needles[0].motion.withdraw_velocity = 0.03;
+       }},
       {"static", [](Scene& s) { s.time.is_static = true; }},
       {"BDF2 with energy",
        [](Scene& s) {
