@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/failure.hpp"
+#include "insertion/growth.hpp"
 #include "insertion/line_points.hpp"
 #include "insertion/tip_events.hpp"
 
@@ -47,19 +48,19 @@ InsertionState start(const Ground& ground, const needle::Needle& needle)
   const needle::BaseMotion& motion = needle.settings().motion;
   InsertionState state;
   if (!(motion.inserted > 0.0)) return state;
-  grow(state.path, motion.entry, ground.mesh, ground.locator, ground.settings.placement);
-  grow(state.path, motion.entry + motion.inserted * motion.direction, ground.mesh, ground.locator,
-       ground.settings.placement);
+  const needle::Shaft shaft = needle.initial().shaft;
+  const fem::GlobalField undeformed{core::VecX::Zero(3 * ground.mesh.node_count())};
+  const Deformed tissue(ground.mesh, ground.locator, undeformed);
+  const Vec3 tip = motion.entry + motion.inserted * motion.direction;
+  grow(state.path, motion.entry, ground.field());
+  grow_to(ground, state, {tip, tip, shaft, tissue, -1, false});
   if (first_tet(state.path) < 0)
     throw core::data_error("needle '" + needle.settings().name +
                            "': the inserted part lies outside the tissue (check -needle_entry, "
                            "-needle_direction and -needle_inserted)");
   state.phase = Phase::inserted;
-  const needle::Shaft shaft = needle.initial().shaft;
   hold_behind(ground, state, state.path.length(), shaft);
   for (CouplingPoint& point : state.points) point.stuck = true;
-  const fem::GlobalField undeformed{core::VecX::Zero(3 * ground.mesh.node_count())};
-  const Deformed tissue(ground.mesh, ground.locator, undeformed);
   for (CouplingPoint& point : state.points) {
     const Site& site = state.path.sites[static_cast<std::size_t>(point.site)];
     point.needle_arc = needle::project(shaft, tissue.position(site.anchor)).s;
@@ -73,29 +74,47 @@ InsertionState enter(const Ground& ground, const InsertionState& old,
                      const needle::Shaft& predicted, const Deformed& tissue)
 {
   // The first entry counts: within one step the tip may have passed right through a thin wall.
-  const auto entries = tissue.entries(predicted.x.front(), predicted.tip());
+  const Vec3 tip = predicted.tip();
+  const auto entries = tissue.entries(predicted.x.front(), tip, ground.body_of_node);
   if (entries.empty()) return old;
   const Vec3& entry = entries.front().X;
+  const int first = ground.tet_at(entry, entries.front().first_tet);
   InsertionState next;
   next.tip.punctures = old.tip.punctures;
   next.path.first_id = old.path.first_id + static_cast<int>(old.path.sites.size());
-  if (ground.border(-1, ground.locator.tet_at(entry), entry) > 0.0) {
-    touch_surface(ground, next, entry, predicted);
+  if (ground.border(-1, first, entry) > 0.0) {
+    touch_surface(ground, next, entry, first, predicted);
     next.tip.offset = tissue.position(next.tip.hold) - tissue.place(entry, next.tip.tet);
     return next;
   }
-  const auto inside = tissue.reference_place(predicted.tip(), entry);
-  const Vec3 X = inside
-                     ? *inside
-                     : tissue.reference_place_continued(predicted.tip(), entries.front().last_tet);
-  grow(next.path, entry, ground.mesh, ground.locator, ground.settings.placement);
-  const int first = ground.locator.tet_at(entry);
-  grow_to(ground, next, passed_place(ground, next, X, first, predicted));
+  const auto inside = tissue.reference_place(tip, entry);
+  const bool same = inside && ground.body(inside->tet) == ground.body(entries.front().first_tet);
+  const Vec3 X = same ? inside->X : tissue.reference_place_continued(tip, entries.front().last_tet);
+  grow(next.path, entry, ground.field());
+  const Vec3 passed = passed_place(ground, next, X, first, predicted);
+  grow_to(ground, next, {passed, tip, predicted, tissue, first});
   if (first_tet(next.path) < 0) return old;
   next.phase = Phase::inserted;
   press(ground, next, next.path.length(), predicted, tissue);
   hold_behind(ground, next, next.path.length(), predicted);
   return next;
+}
+
+}  // namespace
+
+namespace {
+
+/// `passed_place` of a tip that goes on along its path. In a body that it comes into, the friction
+/// of what it passes begins anew.
+Vec3 passed_again(const Ground& ground, const InsertionState& old, const Aim& to,
+                  const needle::Shaft& shaft)
+{
+  const PathRun run = run_at(old.path, std::min(to.arc, old.path.length()));
+  if (old.tip_arc >= run.begin) return passed_place(ground, old, to.X, to.tet, shaft);
+  InsertionState here = old;
+  here.points.clear();
+  here.tip_arc = run.begin;
+  return passed_place(ground, here, to.X, to.tet, shaft);
 }
 
 }  // namespace
@@ -108,34 +127,29 @@ InsertionState advance(const Ground& ground, const InsertionState& old,
 
   const Vec3 tip =
       predicted.tip() + lead(old, predicted, tissue) - hidden_motion_at_tip(ground, old, predicted);
-  const auto inside = tissue.reference_place(tip, old.path.vertex.back());
+  Aim to = aim(ground, old, tip, tissue);
   if (old.phase == Phase::withdrawn) {
-    if (!inside) return old;
+    if (!to.inside) return old;
     // A tip that comes back far beside its old channel cuts a new one; the old one is forgotten.
-    const double beside = distance(old.path, *inside);
-    if (beside > 0.3 * local_edge(ground.mesh, first_tet(old.path)))
+    if (distance(old.path, to.X) > 0.3 * local_edge(ground.mesh, first_tet(old.path)))
       return enter(ground, old, predicted, tissue);
   }
-  // Outside the tissue, extrapolate the map of the tet at the nearer end of the path: the tip may
-  // have left the tissue at either end.
-  const bool behind = old.tip_arc <= 0.5 * old.path.length();
-  const int end_tet = behind ? first_tet(old.path) : last_tet(old.path);
-  Vec3 X = inside ? *inside : tissue.reference_place_continued(tip, end_tet);
   InsertionState next = old;
-  double arc = arc_nearest(next.path, X);
+  double arc = to.arc;
   if (ground.along_line() && arc > old.tip_arc && old.tip_arc > 0.0) {
-    X = passed_place(ground, old, X, end_tet, predicted);
-    arc = arc_nearest(next.path, X);
+    to.X = passed_again(ground, old, to, predicted);
+    arc = arc_nearest(next.path, run_at(next.path, std::min(arc, next.path.length())), to.X);
   }
-  const double tolerance = arc_tolerance(ground.mesh, end_tet);
+  const double tolerance = arc_tolerance(ground.mesh, to.tet);
   if (std::abs(arc - old.tip_arc) > tolerance) next.withdrawing = arc < old.tip_arc;
   if (arc > next.path.length() + 1e-3 * tolerance) {
-    if (resistance(ground, old) <= 0.0) grow_to(ground, next, X);
+    if (resistance(ground, old) <= 0.0)
+      grow_to(ground, next, {to.X, tip, predicted, tissue, to.tet});
     arc = next.path.length();
   }
   // A tip outside the tissue in front of the entry has left the channel, even where the
   // extrapolated map gives a small positive arc.
-  if (!inside && behind && arc > 0.0 && arc < tolerance) arc = 0.0;
+  if (!to.inside && to.behind && arc > 0.0 && arc < tolerance) arc = 0.0;
   press(ground, next, arc, predicted, tissue);
   if (next.tip.pressed) arc = next.path.length();
   next.phase = arc > 0.0 ? Phase::inserted : Phase::withdrawn;

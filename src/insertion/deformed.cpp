@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "insertion/clip.hpp"
 #include "mesh/quadratic.hpp"
@@ -62,12 +63,12 @@ Vec3 Deformed::pull_back(int tet, const Vec3& x) const
   return mesh::positions(*mesh_, tet) * mesh::node_weights(*mesh_, at);
 }
 
-std::optional<Vec3> Deformed::reference_place(const Vec3& x, const Vec3& guess) const
+std::optional<Deformed::Place> Deformed::reference_place(const Vec3& x, const Vec3& guess) const
 {
-  const auto search = [&](const std::vector<int>& tets) -> std::optional<Vec3> {
+  const auto search = [&](const std::vector<int>& tets) -> std::optional<Place> {
     for (int tet : tets)
       if (mesh::local_coordinates(positions_now(tet), x).minCoeff() >= inside)
-        return pull_back(tet, x);
+        return Place{pull_back(tet, x), tet};
     return std::nullopt;
   };
   const Vec3 near = Vec3::Constant(1e-9);
@@ -133,21 +134,16 @@ Deformed::Entry Deformed::entry_of(std::vector<Stretch> starts, const Vec3& P, c
     tet = start.tet;
     curved = true;
   }
-  return {pull_back(tet, P + std::max(t, 0.0) * (Q - P)), tet};
+  return {pull_back(tet, P + std::max(t, 0.0) * (Q - P)), tet, tet, t, t};
 }
 
-std::vector<Deformed::Entry> Deformed::entries(const Vec3& P, const Vec3& Q) const
+/// Stretches that touch form one way through the tissue, which begins at the surface.
+std::vector<Deformed::Entry> Deformed::ways(std::vector<Stretch> stretches, const Vec3& P,
+                                            const Vec3& Q) const
 {
-  std::vector<Stretch> stretches;
-  for (int tet : candidates(P.cwiseMin(Q), P.cwiseMax(Q))) {
-    const auto span = clip_line(corners_now(tet), P, Q);
-    if (span && span->high > 0.0 && span->low < 1.0)
-      stretches.push_back({span->low, span->high, tet});
-  }
   std::sort(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
     return a.low != b.low ? a.low < b.low : a.tet < b.tet;
   });
-  // Stretches that touch form one way through the tissue, which begins at the surface.
   constexpr double touch = 1e-6;
   std::vector<Entry> found;
   for (std::size_t i = 0; i < stretches.size();) {
@@ -162,7 +158,29 @@ std::vector<Deformed::Entry> Deformed::entries(const Vec3& P, const Vec3& Q) con
     }
     found.push_back(entry_of(std::move(starts), P, Q));
     found.back().last_tet = last.tet;
+    found.back().high = last.high;
   }
+  return found;
+}
+
+std::vector<Deformed::Entry> Deformed::entries(const Vec3& P, const Vec3& Q,
+                                               std::span<const int> body_of_node) const
+{
+  std::map<int, std::vector<Stretch>> of_body;
+  for (int tet : candidates(P.cwiseMin(Q), P.cwiseMax(Q))) {
+    const auto span = clip_line(corners_now(tet), P, Q);
+    if (!span || !(span->high > 0.0 && span->low < 1.0)) continue;
+    const auto corner = static_cast<std::size_t>(mesh_->tets[static_cast<std::size_t>(tet)][0]);
+    const int body = body_of_node.empty() ? 0 : body_of_node[corner];
+    of_body[body].push_back({span->low, span->high, tet});
+  }
+  std::vector<Entry> found;
+  for (const auto& [body, stretches] : of_body) {
+    const std::vector<Entry> more = ways(stretches, P, Q);
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Entry& a, const Entry& b) { return a.low < b.low; });
   return found;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/quadratic.hpp"
 #include "mesh/topology.hpp"
 
 namespace trocar::insertion {
@@ -19,10 +20,20 @@ Ground::Ground(const mesh::Mesh& mesh_of, const mesh::Locator& locator_of,
   const auto& forces = settings.tip.cutting;
   resists = membranes.any() ||
             std::any_of(forces.begin(), forces.end(), [](double f) { return f > 0.0; });
-  if (!along_line()) return;
-  edges.emplace(mesh);
-  int bodies = 0;
   body_of_node = mesh::connected_components(mesh, bodies);
+  if (along_line()) edges.emplace(mesh);
+}
+
+int Ground::tet_at(const Vec3& X, int near) const
+{
+  if (bodies < 2) return locator.tet_at(X);
+  constexpr double tolerance = 1e-6;
+  const Vec3 reach = Vec3::Constant(tolerance * mesh::mean_edge(mesh::corners(mesh, near)));
+  for (int tet : locator.in_box(X - reach, X + reach))
+    if (body(tet) == body(near) &&
+        mesh::local_coordinates(mesh::positions(mesh, tet), X).minCoeff() >= -tolerance)
+      return tet;
+  return near;
 }
 
 double Ground::cutting(int tet) const

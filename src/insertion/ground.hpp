@@ -5,6 +5,7 @@
 
 #include "insertion/line.hpp"
 #include "insertion/membranes.hpp"
+#include "insertion/path.hpp"
 #include "insertion/radius_correction.hpp"
 #include "insertion/tip.hpp"
 #include "mesh/smoothed_edges.hpp"
@@ -61,12 +62,15 @@ struct Ground
   {
     return static_cast<std::size_t>(mesh.region[static_cast<std::size_t>(tet)]);
   }
-  /// Number of the connected body that a tet belongs to. For `Placement::line` only.
-  int body(int tet) const
+  /// Number of the connected body that a tet belongs to.
+  int body(int tet) const { return field().body_of(tet); }
+  /// What a path grows through: the tets of one body, or of all (-1).
+  Field field(int body = -1) const
   {
-    const auto corner = static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][0]);
-    return body_of_node[corner];
+    return {mesh, locator, settings.placement, body_of_node, body};
   }
+  /// The lowest tet at the reference place X that belongs to the body of `near`, or `near` itself.
+  int tet_at(const Vec3& X, int near) const;
   bool along_line() const { return settings.placement.placement == Placement::line; }
 
   const mesh::Mesh& mesh;
@@ -75,7 +79,8 @@ struct Ground
   std::vector<tissue::Material> materials;  ///< by physical volume of the mesh
   Membranes membranes;
   std::optional<mesh::SmoothedEdges> edges;  ///< for `Placement::line`
-  std::vector<int> body_of_node;             ///< for `Placement::line`
+  std::vector<int> body_of_node;             ///< number of the connected body of every node
+  int bodies = 0;
   bool resists = false;  ///< some membrane or tissue of the mesh resists the tip
 };
 

@@ -74,7 +74,8 @@ class Extension
   }
   void add_node(double arc, int tet)
   {
-    const double edge = ground_->edges->at(tet, place_at(*path_, std::min(arc, path_->length())));
+    const double end = run_at(*path_, line_->stretches.back().begin).end;
+    const double edge = ground_->edges->at(tet, place_before(*path_, std::min(arc, end)));
     line_->nodes.push_back({arc, edge, static_cast<int>(line_->stretches.size()) - 1});
   }
   /// Length of the cell that begins at the last node.
@@ -107,7 +108,7 @@ class Extension
       if (end < line_->nodes.back().arc) continue;
       const double node = line_->nodes.back().arc;
       const int tet = tet_before(*path_, node);
-      line_->nodes.back().edge = ground_->edges->at(tet, place_at(*path_, node));
+      line_->nodes.back().edge = ground_->edges->at(tet, place_before(*path_, node));
       add_node(node + spacing(), tet);
     }
   }
@@ -164,9 +165,10 @@ class Extension
   /// jitter of short steps does not turn it.
   Vec3 axis_at(double arc, double edge) const
   {
-    const double from = std::max(arc - 0.125 * edge, 0.0);
-    const double to = std::min(arc + 0.125 * edge, path_->length());
-    return (place_at(*path_, to) - place_at(*path_, from)).normalized();
+    const PathRun run = run_at(*path_, arc);
+    const double from = std::max(arc - 0.125 * edge, run.begin);
+    const double to = std::min(arc + 0.125 * edge, run.end);
+    return (place_before(*path_, to) - place_at(*path_, from)).normalized();
   }
 
   const Ground* ground_;

@@ -60,8 +60,9 @@ Vec3 passed_place(const Ground& ground, const InsertionState& state, const Vec3&
     const double held = moments(state.path.line, point.site, 0.0, arc).length;
     if (!point.stuck && held > 0.0) density = point.lambda[2] / held;
   }
-  const double surface =
-      state.path.line.stretches.empty() ? 0.0 : state.path.line.stretches.back().begin;
+  const Line& line = state.path.line;
+  const double surface = std::max(line.stretches.empty() ? 0.0 : line.stretches.back().begin,
+                                  run_at(state.path, arc).begin);
   const double passed = length_passed(
       ground, {from, tet, std::max(arc - surface, 0.0), moved, density, shaft.radius});
   return moved > 0.0 ? Vec3(from + passed / moved * (X - from)) : X;

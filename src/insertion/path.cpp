@@ -18,13 +18,14 @@ struct Passage
   double tolerance;  ///< `arc_tolerance` over the length of the segment
 };
 
-std::vector<Passage> passages(const mesh::Mesh& mesh, const mesh::Locator& locator, const Vec3& P,
-                              const Vec3& Q)
+std::vector<Passage> passages(const Field& field, const Vec3& P, const Vec3& Q)
 {
+  const mesh::Mesh& mesh = field.mesh;
   std::vector<Passage> found;
   const double length = (Q - P).norm();
   const Vec3 margin = Vec3::Constant(1e-9 + 1e-3 * length);
-  for (int tet : locator.in_box(P.cwiseMin(Q) - margin, P.cwiseMax(Q) + margin)) {
+  for (int tet : field.locator.in_box(P.cwiseMin(Q) - margin, P.cwiseMax(Q) + margin)) {
+    if (!field.has(tet)) continue;
     const auto span = clip_line(mesh::corners(mesh, tet), P, Q);
     const double tolerance = arc_tolerance(mesh, tet) / length;
     if (!span || span->high - span->low <= tolerance) continue;  // grazes a vertex or an edge
@@ -124,9 +125,10 @@ double arc_tolerance(const mesh::Mesh& mesh, int tet)
   return relative_tolerance * local_edge(mesh, tet);
 }
 
-void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator& locator,
-          const PlacementSettings& settings)
+void grow(Path& path, const Vec3& X, const Field& field)
 {
+  const mesh::Mesh& mesh = field.mesh;
+  const PlacementSettings& settings = field.settings;
   if (path.empty()) {
     path.vertex.push_back(X);
     path.arc.push_back(0.0);
@@ -136,7 +138,7 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
   const double begin = path.length();
   const double length = (X - P).norm();
   if (!(length > 0.0)) return;
-  const std::vector<Passage> tets = passages(mesh, locator, P, X);
+  const std::vector<Passage> tets = passages(field, P, X);
   const std::vector<Crossing> crossings = crossings_of(tets);
   add_pieces(path, tets, crossings, begin, length);
   path.vertex.push_back(X);
@@ -154,7 +156,8 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
     const double shortest =
         std::max(settings.merge * local_edge(mesh, c.tet) * (1.0 - relative_tolerance),
                  c.tolerance * length);
-    if (path.sites.empty() || arc - path.sites.back().arc > shortest)
+    const bool other = !path.sites.empty() && !field.same_body(path.sites.back().tet, c.tet);
+    if (path.sites.empty() || other || arc - path.sites.back().arc > shortest)
       add_site(path, mesh, c.tet, arc, P + c.t * (X - P));
   }
   if (settings.placement != Placement::spacing) return;
@@ -168,108 +171,13 @@ void grow(Path& path, const Vec3& X, const mesh::Mesh& mesh, const mesh::Locator
   }
 }
 
-std::optional<Site> site_at(const Path& path, const mesh::Mesh& mesh, double arc)
+void jump(Path& path, const Vec3& X, double gap)
 {
-  const Piece* in = nullptr;
-  for (const Piece& piece : path.pieces)
-    if (piece.tet >= 0 && piece.begin < arc) in = &piece;
-  if (!in) return std::nullopt;
-  const double here = std::min(arc, in->end);
-  return Site{here, in->tet, anchor_at(mesh, in->tet, place_at(path, here))};
-}
-
-constraint::Anchor anchor_at(const mesh::Mesh& mesh, int tet, const Vec3& X)
-{
-  const mesh::TetNodes nodes = mesh::nodes_of(mesh, tet);
-  constraint::Anchor anchor{{nodes.begin(), nodes.end()}, {}};
-  Eigen::Vector4d at = mesh::local_coordinates(mesh::positions(mesh, tet), X);
-  for (int a = 0; a < 4; ++a)
-    if (at[a] < relative_tolerance) at[a] = 0.0;  // X is on the face: nodes off it get no weight
-  anchor.weight = mesh::node_weights(mesh, at / at.sum());
-  return anchor;
-}
-
-Vec3 place_at(const Path& path, double arc)
-{
-  const auto end = std::upper_bound(path.arc.begin() + 1, path.arc.end() - 1, arc);
-  const auto i = static_cast<std::size_t>(end - path.arc.begin());
-  const double part = (arc - path.arc[i - 1]) / (path.arc[i] - path.arc[i - 1]);
-  return path.vertex[i - 1] + part * (path.vertex[i] - path.vertex[i - 1]);
-}
-
-int tet_before(const Path& path, double arc)
-{
-  const auto at = std::lower_bound(path.pieces.begin(), path.pieces.end(), arc,
-                                   [](const Piece& piece, double s) { return piece.end < s; });
-  return at == path.pieces.end() ? -1 : at->tet;
-}
-
-int tet_after(const Path& path, double arc)
-{
-  const auto at = std::upper_bound(path.pieces.begin(), path.pieces.end(), arc,
-                                   [](double s, const Piece& piece) { return s < piece.end; });
-  return at == path.pieces.end() ? -1 : at->tet;
-}
-
-double tissue_length(const Path& path, double arc)
-{
-  double length = 0.0;
-  for (const Piece& piece : path.pieces)
-    if (piece.tet >= 0) length += std::max(0.0, std::min(piece.end, arc) - piece.begin);
-  return length;
-}
-
-int first_tet(const Path& path)
-{
-  for (const Piece& piece : path.pieces)
-    if (piece.tet >= 0) return piece.tet;
-  return -1;
-}
-
-int last_tet(const Path& path)
-{
-  for (auto piece = path.pieces.rbegin(); piece != path.pieces.rend(); ++piece)
-    if (piece->tet >= 0) return piece->tet;
-  return -1;
-}
-
-bool straight(const Path& path)
-{
-  if (path.vertex.size() < 3) return true;
-  const Vec3 chord = (path.vertex.back() - path.vertex.front()).normalized();
-  return std::all_of(path.vertex.begin(), path.vertex.end(), [&](const Vec3& X) {
-    return (X - path.vertex.front()).cross(chord).norm() <= 1e-9 * path.length();
-  });
-}
-
-double arc_nearest(const Path& path, const Vec3& X)
-{
-  double best = std::numeric_limits<double>::infinity();
-  double arc = 0.0;
-  const std::size_t segments = path.vertex.size() - 1;
-  for (std::size_t i = 0; i < segments; ++i) {
-    const Vec3 d = path.vertex[i + 1] - path.vertex[i];
-    const double low = i == 0 ? -std::numeric_limits<double>::infinity() : 0.0;
-    const double high = i + 1 == segments ? std::numeric_limits<double>::infinity() : 1.0;
-    const double t = std::clamp((X - path.vertex[i]).dot(d) / d.squaredNorm(), low, high);
-    const double distance = (path.vertex[i] + t * d - X).squaredNorm();
-    if (distance < best) {
-      best = distance;
-      arc = path.arc[i] + t * d.norm();
-    }
-  }
-  return arc;
-}
-
-double distance(const Path& path, const Vec3& X)
-{
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + 1 < path.vertex.size(); ++i) {
-    const Vec3 d = path.vertex[i + 1] - path.vertex[i];
-    const double t = std::clamp((X - path.vertex[i]).dot(d) / d.squaredNorm(), 0.0, 1.0);
-    nearest = std::min(nearest, (path.vertex[i] + t * d - X).norm());
-  }
-  return nearest;
+  const double begin = path.length();
+  if (gap > 0.0) path.pieces.push_back({begin, begin + gap, -1});
+  path.jumps.push_back(static_cast<int>(path.vertex.size()));
+  path.vertex.push_back(X);
+  path.arc.push_back(begin + gap);
 }
 
 }  // namespace trocar::insertion

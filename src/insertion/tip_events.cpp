@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "insertion/channel.hpp"
+#include "insertion/growth.hpp"
 #include "insertion/line_points.hpp"
 #include "mesh/quadratic.hpp"
 
@@ -45,16 +46,15 @@ core::Mat3 disc_frame(const Vec3& normal, const needle::ShaftPoint& end)
 
 }  // namespace
 
-void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X,
+void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X, int tet,
                    const needle::Shaft& shaft)
 {
-  const int tet = ground.locator.tet_at(X);
   const double edge = local_edge(ground.mesh, tet);
   const Vec3 normal = face_normal(ground.mesh, tet, X);
   const int first_id = state.path.first_id;
   state.path = {};
   state.path.first_id = first_id;
-  grow(state.path, X, ground.mesh, ground.locator, ground.settings.placement);
+  grow(state.path, X, ground.field());
   state.phase = Phase::contact;
   state.tip.pressed = true;
   state.tip.wall = true;
@@ -63,37 +63,6 @@ void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X,
   state.tip.radius = std::max(ground.settings.tip.radius, edge);
   state.tip.hold = tip_support(ground.mesh, ground.locator, {X, tet, state.tip.radius},
                                disc_frame(normal, needle::shaft_at(shaft, shaft.length)), true);
-}
-
-void grow_to(const Ground& ground, InsertionState& state, const Vec3& X)
-{
-  state.tip.threshold = 0.0;
-  state.tip.wall = false;
-  if (!ground.resists)
-    return grow(state.path, X, ground.mesh, ground.locator, ground.settings.placement);
-  const Path before = state.path;
-  grow(state.path, X, ground.mesh, ground.locator, ground.settings.placement);
-  for (std::size_t i = std::max<std::size_t>(before.pieces.size(), 1); i < state.path.pieces.size();
-       ++i) {
-    const int from = state.path.pieces[i - 1].tet, to = state.path.pieces[i].tet;
-    if (from == to) continue;
-    const double edge = local_edge(ground.mesh, std::max(from, to));
-    const double arc = state.path.pieces[i].begin;
-    const double part = (arc - before.length()) / (X - before.vertex.back()).norm();
-    const Vec3 place = before.vertex.back() + part * (X - before.vertex.back());
-    const double threshold = ground.border(from, to, place);
-    // An oblique path may cross the faces of one membrane several times: up to an edge (or the
-    // tip's radius) beyond the pierced place, a border with the same force counts as pierced.
-    const bool pierced = threshold == state.tip.pierced_force &&
-                         arc <= state.tip.pierced_arc + std::max(ground.settings.tip.radius, edge);
-    if (threshold <= 0.0 || pierced) continue;
-    state.path = before;
-    grow(state.path, place, ground.mesh, ground.locator, ground.settings.placement);
-    state.tip.threshold = threshold;
-    state.tip.wall = from < 0 || to < 0;
-    state.tip.tet = to >= 0 ? to : from;
-    return;
-  }
 }
 
 double resistance(const Ground& ground, const InsertionState& state)
@@ -152,23 +121,25 @@ bool stand(const Ground& ground, InsertionState& state, const needle::Shaft& sha
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
   const Vec3 ahead = shaft.tip() + lead(state, shaft, tissue) + edge * tangent;
   const Vec3 stood = state.path.vertex.back();
-  const auto entries = tissue.entries(shaft.x.front(), ahead);
+  const auto entries = tissue.entries(shaft.x.front(), ahead, ground.body_of_node);
   const auto nearest =
       std::min_element(entries.begin(), entries.end(), [&](const auto& a, const auto& b) {
         return (a.X - stood).squaredNorm() < (b.X - stood).squaredNorm();
       });
   const bool there = nearest != entries.end();
-  if (there && ground.locator.tet_at(nearest->X) >= 0)
-    touch_surface(ground, state, nearest->X, shaft);
+  const int tet = there ? ground.tet_at(nearest->X, nearest->first_tet) : -1;
+  if (tet >= 0) touch_surface(ground, state, nearest->X, tet, shaft);
   if (!there || state.tip.threshold <= 0.0) leave_surface(state);
   return state.tip.pressed;
 }
 
-/// Reference place of a tip at the end of its path; extrapolated when the tip is in no tet.
-Vec3 reference_of(const Vec3& tip, const InsertionState& state, const Deformed& tissue)
+/// Reference place of a tip at the end of its path; extrapolated when the tip is not in its body.
+Vec3 reference_of(const Ground& ground, const Vec3& tip, const InsertionState& state,
+                  const Deformed& tissue)
 {
+  if (ground.bodies > 1) return reference_in(ground, tissue, tip, state.tip.tet);
   const auto inside = tissue.reference_place(tip, state.path.vertex.back());
-  return inside ? *inside : tissue.reference_place_continued(tip, state.tip.tet);
+  return inside ? inside->X : tissue.reference_place_continued(tip, state.tip.tet);
 }
 
 /// The tissue has yielded: the border before the tip is pierced, and the channel grows to the tip.
@@ -176,14 +147,14 @@ void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
               const needle::Shaft& shaft, const Deformed& tissue)
 {
   const Vec3 X =
-      passed_place(ground, state, reference_of(tip, state, tissue), state.tip.tet, shaft);
+      passed_place(ground, state, reference_of(ground, tip, state, tissue), state.tip.tet, shaft);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
   if (state.tip.threshold > 0.0) {
     ++state.tip.punctures;
     state.tip.pierced_arc = state.path.length();
     state.tip.pierced_force = state.tip.threshold;
   }
-  grow_to(ground, state, X);
+  grow_to(ground, state, {X, tip, shaft, tissue, state.tip.tet});
   state.phase = Phase::inserted;
   press(ground, state, state.path.length(), shaft, tissue);
   // The gap at the new end of the channel is closed, also in the bevel's direction. A tip stopped
@@ -228,7 +199,8 @@ void settle_tip(const Ground& ground, InsertionState& state, const CouplingRepor
     tip = tissue.place(state.path.vertex.back(), state.tip.tet) - report.tip_gap * tangent;
   state.tip.pressed = false;
   if (report.tip == TipOutcome::yields) return go_ahead(ground, state, tip, shaft, tissue);
-  const double arc = arc_nearest(state.path, reference_of(tip, state, tissue));
+  const PathRun run = run_at(state.path, state.path.length());
+  const double arc = arc_nearest(state.path, run, reference_of(ground, tip, state, tissue));
   state.tip_arc = std::clamp(arc, 0.0, state.path.length());
 }
 

@@ -6,13 +6,9 @@
 // Events of the tip: it meets borders, presses on them, slides and cuts.
 namespace trocar::insertion {
 
-/// Puts the tip on the surface at X (reference); a new path begins there.
-void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X,
+/// Puts the tip on the surface of a tet at X (reference); a new path begins there.
+void touch_surface(const Ground& ground, InsertionState& state, const Vec3& X, int tet,
                    const needle::Shaft& shaft);
-
-/// Grows the path to X (reference), or only to the first border that resists. That border's force
-/// then is the tip's threshold.
-void grow_to(const Ground& ground, InsertionState& state, const Vec3& X);
 
 /// Force at which the tissue at the end of the path yields [N]; 0: nothing resists.
 double resistance(const Ground& ground, const InsertionState& state);

@@ -71,6 +71,11 @@ void refuse_indices_of_nothing(const State& state, const fem::Space& space)
     sound(one.tip.hold);
     if (one.path.vertex.size() != one.path.arc.size())
       throw core::data_error("a path of it has not as many lengths as corners");
+    int before = 0;
+    for (int jump : one.path.jumps) {
+      among(jump, before + 1, one.path.vertex.size());
+      before = jump;
+    }
   }
 }
 

@@ -74,10 +74,9 @@ struct Block
   {
     InsertionState state;
     state.phase = Phase::inserted;
-    grow(state.path, entry, mesh, locator, ground.settings.placement);
+    grow(state.path, entry, ground.field());
     for (int n = 1; n <= parts; ++n) {
-      grow(state.path, entry + depth * n / parts * direction, mesh, locator,
-           ground.settings.placement);
+      grow(state.path, entry + depth * n / parts * direction, ground.field());
       hold_behind(ground, state, state.path.length(), shaft(depth * n / parts));
     }
     return state;

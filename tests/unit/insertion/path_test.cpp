@@ -24,7 +24,7 @@ struct Scene
   {
     Path path;
     for (int i = 0; i <= parts; ++i)
-      grow(path, from + (to - from) * i / parts, mesh, locator, settings);
+      grow(path, from + (to - from) * i / parts, {mesh, locator, settings});
     return path;
   }
   mesh::Mesh mesh;
@@ -198,7 +198,7 @@ TEST(Deformed, PullsWorldPointsBackThroughTheDeformation)
     for (const Vec3& guess : {X, Vec3(0.03, 0.02, 0.02)}) {
       const auto back = tissue.reference_place(x, guess);
       ASSERT_TRUE(back.has_value());
-      EXPECT_LT((*back - X).norm(), 1e-12);
+      EXPECT_LT((back->X - X).norm(), 1e-12);
     }
   }
   EXPECT_FALSE(tissue.reference_place(Vec3(0.5, 0.5, 0.5), Vec3(0.03, 0.02, 0.02)).has_value());
