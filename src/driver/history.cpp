@@ -80,6 +80,20 @@ void add_cavity(const std::string& name, std::size_t i, List& list)
   list.number(at + "alarm", "1", [=](const Moment& now) { return report(now).alarm ? 1 : 0; });
 }
 
+void add_contact(const std::string& name, std::size_t p, List& list)
+{
+  const std::string at = "contact/" + name + "/";
+  const auto report = [p](const Moment& now) -> const contact::PairReport& {
+    return now.report.contact[p];
+  };
+  list.vector(at + "force", "N", [=](const Moment& now) { return report(now).force; });
+  list.number(at + "area", "m^2", [=](const Moment& now) { return report(now).area; });
+  list.number(at + "weighted_gap", "m",
+              [=](const Moment& now) { return report(now).weighted_gap; });
+  list.number(at + "sticking", "1", [=](const Moment& now) { return report(now).sticking; });
+  list.number(at + "slipping", "1", [=](const Moment& now) { return report(now).slipping; });
+}
+
 void add_conduit(const std::string& name, std::size_t e, List& list)
 {
   const auto conduit = [e](const Moment& now) -> const cavity::ConduitState& {
@@ -203,6 +217,8 @@ std::vector<History> histories(const Scenario& scenario)
     add_cavity(scenario.cavities.cavities[i].name, i, list);
   for (std::size_t e = 0; e < scenario.cavities.conduits.size(); ++e)
     add_conduit(scenario.cavities.conduits[e].name, e, list);
+  for (std::size_t p = 0; p < scenario.contact.pairs.size(); ++p)
+    add_contact(scenario.contact.pairs[p].name, p, list);
   add_holders(scenario.tissue.boundary, list);
   if (scenario.energy) add_energy(list);
   add_constraints(list);

@@ -78,6 +78,9 @@ inline void with_override(std::vector<OptionSpec>& table, const OptionSpec& spec
   table.push_back(own);
 }
 
+/// Adds the options of contact: pairs and obstacles.
+void add_contact_options(std::vector<OptionSpec>& table);
+
 /// Adds the options of cavities and of the conduits between them.
 void add_cavity_options(std::vector<OptionSpec>& table);
 

@@ -279,7 +279,7 @@ std::vector<OptionSpec> build_table()
   std::vector<OptionSpec> t = general_options();
   for (auto* add :
        {add_tissue, add_boundary, add_needles, add_insertion, add_tip, add_cavity_options,
-        add_constraint, add_compliance, add_checkpoints, add_output})
+        add_contact_options, add_constraint, add_compliance, add_checkpoints, add_output})
     add(t);
   return t;
 }

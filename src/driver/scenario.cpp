@@ -9,6 +9,7 @@
 #include "driver/boundary_options.hpp"
 #include "driver/cavity_options.hpp"
 #include "driver/compliance_options.hpp"
+#include "driver/contact_options.hpp"
 #include "driver/insertion_options.hpp"
 #include "driver/needle_options.hpp"
 #include "driver/option_source.hpp"
@@ -217,6 +218,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   if (options.flag("insertion_radius_correction")) add_radius_correction(scenario);
   scenario.insertion.line.dilatation = dilatation;
   read_cavities(options, scenario, comm);
+  scenario.contact = read_contact(options, scenario.mesh);
   options.refuse_unread();
   check_scenario(scenario);
   return scenario;

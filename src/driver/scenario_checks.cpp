@@ -46,6 +46,22 @@ void refuse_idle(const Scenario& scenario)
          "insertion_radius_correction: the eta law has a compliance of its own (-insertion_eta)");
 }
 
+/// Throws Failure (64) for what contact between bodies does not go with.
+void refuse_beside_contact(const Scenario& scenario)
+{
+  if (scenario.contact.pairs.empty()) return;
+  const auto refuse = [](bool idle, const std::string& why) {
+    if (idle) throw core::option_error("option -" + why + " (-contact_pairs)");
+  };
+  refuse(scenario.pv.has_value(), "pv_curve: a sweep of one cavity knows no contact");
+  refuse(scenario.tissue.reuse == solve::Reuse::stale,
+         "compliance_reuse stale: contact is solved to its true residual");
+  refuse(scenario.insertion.eta > 0.0, "insertion_eta: this law is of needles alone");
+  for (const cavity::CavitySettings& cavity : scenario.cavities.cavities)
+    refuse(cavity.model == cavity::Model::frozen,
+           "cavity_model frozen: the search for pressures knows no contact");
+}
+
 /// Throws Failure (64) for a spacing that puts more than 1e5 coupling points on a needle. Their
 /// rows would only fill the memory.
 void refuse_crowded(const Scenario& scenario)
@@ -102,6 +118,7 @@ void check_scenario(Scenario& scenario)
   refuse_dashpots_without_time(scenario);
   refuse_idle(scenario);
   refuse_crowded(scenario);
+  refuse_beside_contact(scenario);
   add_warnings(scenario);
 }
 

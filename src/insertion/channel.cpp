@@ -125,8 +125,7 @@ InsertionState advance(const Ground& ground, const InsertionState& old,
   if (old.phase == Phase::contact) return old;  // `settle_tip` decides after the solve
   if (first_tet(old.path) < 0) return enter(ground, old, predicted, tissue);
 
-  const Vec3 tip =
-      predicted.tip() + lead(old, predicted, tissue) - hidden_motion_at_tip(ground, old, predicted);
+  const Vec3 tip = tip_on_way(ground, old, predicted, tissue);
   Aim to = aim(ground, old, tip, tissue);
   if (old.phase == Phase::withdrawn) {
     if (!to.inside) return old;

@@ -29,6 +29,7 @@ struct TipState
   constraint::Anchor hold;     ///< support around that place
   double radius = 0.0;  ///< of the support: TipSettings::radius or, if larger, the local edge [m]
   Vec3 offset = Vec3::Zero();  ///< from the tip to the support's mean when the gap is closed [m]
+  double hidden = 0.0;  ///< what `offset` counts of `hidden_motion_at_tip`, along the shaft [m]
   Vec3 lambda = Vec3::Zero();  ///< two lateral multipliers and the axial one [N]
   int punctures = 0;           ///< borders pierced so far
 
@@ -45,6 +46,7 @@ struct TipState
     v("hold", "", self.hold);
     v("radius", "m", self.radius);
     v("offset", "m", self.offset);
+    v("hidden", "m", self.hidden);
     v("lambda", "N", self.lambda);
     v("punctures", "1", self.punctures);
   }

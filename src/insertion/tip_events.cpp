@@ -89,7 +89,9 @@ void press(const Ground& ground, InsertionState& state, double arc, const needle
   tip.hold = tip_support(
       ground.mesh, ground.locator, {X, tet, tip.radius},
       tip.wall ? disc_frame(face_normal(ground.mesh, tet, X), end) : frame_of(end), tip.wall);
-  tip.offset = tissue.position(tip.hold) - tissue.place(X, tet);
+  // The needle's end is ahead of the end of its path by what the mesh hides.
+  tip.hidden = end.tangent.dot(hidden_motion_at_tip(ground, state, shaft));
+  tip.offset = tissue.position(tip.hold) - (tissue.place(X, tet) + tip.hidden * end.tangent);
 }
 
 Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue)
@@ -99,6 +101,15 @@ Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deforme
   const Vec3 closed = tissue.position(state.tip.hold) - state.tip.offset;
   const Vec3 place = tissue.place(state.path.vertex.back(), state.tip.tet);
   return tangent * tangent.dot(place - closed);
+}
+
+Vec3 tip_on_way(const Ground& ground, const InsertionState& state, const needle::Shaft& shaft,
+                const Deformed& tissue)
+{
+  Vec3 tip = shaft.tip() + lead(state, shaft, tissue) - hidden_motion_at_tip(ground, state, shaft);
+  if (state.tip.pressed)  // the lead has what was hidden when the gap was closed
+    tip += state.tip.hidden * needle::shaft_at(shaft, shaft.length).tangent;
+  return tip;
 }
 
 namespace {
@@ -149,6 +160,7 @@ void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
   const Vec3 X =
       passed_place(ground, state, reference_of(ground, tip, state, tissue), state.tip.tet, shaft);
   const Vec3 tangent = needle::shaft_at(shaft, shaft.length).tangent;
+  const double hidden = tangent.dot(hidden_motion_at_tip(ground, state, shaft));
   if (state.tip.threshold > 0.0) {
     ++state.tip.punctures;
     state.tip.pierced_arc = state.path.length();
@@ -161,6 +173,7 @@ void go_ahead(const Ground& ground, InsertionState& state, const Vec3& tip,
   // by a border is beyond it by the rest of its advance: its gap starts at minus this rest.
   if (state.tip.pressed) {
     state.tip.offset = tissue.position(state.tip.hold) - shaft.tip();
+    state.tip.hidden = hidden;
     const Vec3 end = tissue.place(state.path.vertex.back(), state.tip.tet);
     if (state.tip.threshold > 0.0)
       state.tip.offset += std::max(tangent.dot(tip - end), 0.0) * tangent;
@@ -194,7 +207,7 @@ void settle_tip(const Ground& ground, InsertionState& state, const CouplingRepor
   }
   // On a surface the channel begins where the axis meets it and is as deep as the tip's row
   // advanced. Elsewhere the channel ends at the tip.
-  Vec3 tip = shaft.tip() + lead(state, shaft, tissue) - hidden_motion_at_tip(ground, state, shaft);
+  Vec3 tip = tip_on_way(ground, state, shaft, tissue);
   if (on_surface)
     tip = tissue.place(state.path.vertex.back(), state.tip.tet) - report.tip_gap * tangent;
   state.tip.pressed = false;

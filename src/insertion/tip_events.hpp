@@ -23,6 +23,11 @@ void press(const Ground& ground, InsertionState& state, double arc, const needle
 /// load the end of the path moves farther than this mean.
 Vec3 lead(const InsertionState& state, const needle::Shaft& shaft, const Deformed& tissue);
 
+/// Where the tip is on its way through the tissue of the mesh [m]: ahead of the needle's end by
+/// `lead`, and behind by what the mesh hides of the tissue's motion there.
+Vec3 tip_on_way(const Ground& ground, const InsertionState& state, const needle::Shaft& shaft,
+                const Deformed& tissue);
+
 /// Updates path and tip after the solve, with shaft and tissue at the end of the step. Where the
 /// tissue yielded, the path grows by the tip's advance, up to the next border. A tip that slid on a
 /// surface touches it where it now is. A tip that came apart leaves the surface, or gets its

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/words.hpp"
+#include "law/cone_newton.hpp"
 #include "law/fixed_sets.hpp"
 #include "law/immovable.hpp"
 
@@ -115,12 +116,27 @@ Multipliers settle_bounds(const Problem& problem, const Settings& settings)
 
 Multipliers solve(const Problem& problem, const Settings& settings)
 {
-  const auto follows = [](const Block& block) {
-    return block.law.set == Law::Set::follower || block.law.set == Law::Set::cone;
+  const auto is_cone = [](const Block& block) { return block.law.set == Law::Set::cone; };
+  const auto follows = [&](const Block& block) {
+    return block.law.set == Law::Set::follower || is_cone(block);
   };
   if (std::none_of(problem.blocks.begin(), problem.blocks.end(), follows))
     return solve_fixed_sets(problem, settings);
-  return settle_bounds(problem, settings);
+  // Newton's method where many groups slip or stick: there the bounds settle slowly, or not at all.
+  constexpr int most = 30;
+  const auto cones = std::count_if(problem.blocks.begin(), problem.blocks.end(), is_cone);
+  const bool newton =
+      settings.method == Method::automatic && cones > 1 && all_for_cone_newton(problem);
+  if (newton) {
+    Multipliers result = cone_newton(problem, settings, most);
+    if (result.converged) return result;
+  }
+  Multipliers settled = settle_bounds(problem, settings);
+  if (!newton || settled.converged || settled.lambda.size() != problem.rows()) return settled;
+  Problem again = problem;
+  again.start = settled.lambda;
+  Multipliers result = cone_newton(again, settings, most);
+  return result.converged ? result : settled;
 }
 
 }  // namespace trocar::law

@@ -40,6 +40,8 @@ EnergyAccount account(const Model& model, const State& old, const Scheme& scheme
     energy.friction -= done.coupling.friction_work;
     energy.cutting -= done.coupling.cutting_work;
   }
+  for (const contact::PairReport& pair : newton.report().contact)
+    energy.friction -= pair.friction_work;
   // At the start all sums are zero, and the stored energy is kept as `stored_at_start`.
   if (now.start) {
     const double stored = energy.elastic + energy.kinetic;
@@ -57,6 +59,20 @@ void accept_cavities(const Model& model, const core::TimeStep& now, Newton& newt
   report.cavities = cavity::accept(cavities, {next.tissue.u, shape, now}, next.cavities);
   for (cavity::CavityReport& cavity : report.cavities)
     cavity.iterations = std::max(report.linearisations, report.pressure_updates);
+}
+
+void accept_contact(const Model& model, const State& old, Newton& newton)
+{
+  State& next = newton.state();
+  StepReport& report = newton.report();
+  next.contact = {};
+  report.contact.assign(model.contact.size(), {});
+  if (!newton.solution().contact) return;
+  const fem::GlobalField u = model.space.gather(next.tissue.u);
+  const fem::GlobalField before = model.space.gather(old.tissue.u);
+  next.contact =
+      contact::accept({model.contact, old.contact, before}, *newton.solution().contact,
+                      {model.scene.mesh, u}, model.scene.insertion.stick_tolerance, report.contact);
 }
 
 void accept_needles(const Model& model, Newton& newton)
@@ -94,6 +110,7 @@ Outcome<Accepted> accept(const Model& model, const State& old, const Scheme& sch
         model.tissue.reactions(scheme.past().tissue, next.tissue.u, now,
                                newton.solution().forces(model, next, newton.walls(), now));
   if (model.cavities) accept_cavities(model, now, newton);
+  if (!model.contact.empty()) accept_contact(model, old, newton);
   accept_needles(model, newton);
   model.tissue.remember_factor(next.tissue);
   if (model.scene.time.second_order && !now.start)

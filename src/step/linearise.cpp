@@ -88,7 +88,24 @@ void Newton::collect_rows(Solution& solution)
   if (model_->cavities)
     solution.of_cavities = cavity::add_rows(*model_->cavities, next_.cavities,
                                             {next_.tissue.u, walls_, now}, rows.set);
+  if (!model_->contact.empty()) {
+    const fem::GlobalField u = model_->space.gather(next_.tissue.u);
+    solution.of_contact = contact::add_rows(contacts(), {model_->scene.mesh, u}, rows.set);
+  }
   solution.system = constraint::System(std::move(rows.set), std::move(bodies));
+}
+
+/// Rows and forces of contact in the geometry that the linearisation led to.
+void Newton::end_contact(Solution& solution) const
+{
+  const fem::GlobalField u = model_->space.gather(next_.tissue.u);
+  const contact::Deformation now{model_->scene.mesh, u};
+  const std::vector<contact::Pair>& pairs = model_->contact;
+  const bool any = std::any_of(pairs.begin(), pairs.end(),
+                               [&](const contact::Pair& pair) { return contact::near(pair, now); });
+  if (!any && solution.of_contact.groups.empty()) return;
+  solution.contact =
+      contact::ending(contacts(), now, solution.of_contact, solution.lambda(), solution.mobility);
 }
 
 core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
@@ -107,6 +124,7 @@ core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)
   solution.saddle = std::move(*saddle);
   if (!solution.system.empty()) solution.mobility = law::mobility(solution.saddle.problem);
   correct(solution);
+  if (!model_->contact.empty()) end_contact(solution);
   return solution;
 }
 

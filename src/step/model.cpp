@@ -16,6 +16,7 @@ Model::Model(const Scene& of, const base::Comm& comm)
     cavities.emplace(scene.mesh, space, scene.cavities, ledger);
     pressure_search.emplace(*cavities, ledger);
   }
+  contact = contact::pairs_of(scene.contact, scene.mesh, tissue.fixed());
   driven_at_start = !scene.tissue.boundary.displacements.empty() || cavities.has_value();
   for (const needle::NeedleSettings& settings : scene.needles) {
     needles.emplace_back(settings);

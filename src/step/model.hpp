@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cavity/pressure_search.hpp"
+#include "contact/contacts.hpp"
 #include "mesh/partition.hpp"
 #include "step/scene.hpp"
 
@@ -34,7 +35,8 @@ struct Model
   std::vector<needle::Needle> needles{};
   bool driven_at_start = false;            ///< rows or supports prescribe motion from the start on
   std::optional<mesh::Locator> locator{};  ///< only with needles
-  std::optional<insertion::Ground> ground{};                ///< only with needles
+  std::optional<insertion::Ground> ground{};  ///< only with needles
+  std::vector<contact::Pair> contact{};
   std::optional<cavity::Cavities> cavities{};               ///< only with cavities
   std::optional<cavity::PressureSearch> pressure_search{};  ///< only with cavities
 };

@@ -8,14 +8,21 @@
 
 // Stopping rule and line search of Newton's iteration. linearise.cpp has the linearisation.
 namespace trocar::step {
+namespace {
+
+constexpr int most_linearisations = 50;  ///< of a step that is iterated until it is balanced
+
+}  // namespace
 
 Newton::Newton(Model& model, const Scheme& scheme, State first)
     : model_(&model),
       scheme_(&scheme),
       effort_(effort_of(model, scheme.now())),
       next_(std::move(first)),
+      touched_(next_.contact),
       walls_(model.walls(next_.tissue.u))
 {
+  if (!model.contact.empty()) u_start_ = model.space.gather(next_.tissue.u);
   model.tissue.tangent().begin_step();
 }
 
@@ -24,7 +31,7 @@ Newton::Newton(Model& model, const Scheme& scheme, State first)
 /// as many as it needs, at most 50.
 Newton::Effort Newton::effort_of(const Model& model, const core::TimeStep& now)
 {
-  constexpr int most = 50;
+  constexpr int most = most_linearisations;
   constexpr double automatic_first = 1e-3, automatic = 1e-6;
   const double tolerance = model.scene.tissue.newton_tolerance;
   const bool bends = !model.scene.tissue.all_linear();
@@ -56,6 +63,10 @@ double Newton::largest_increment() const
 void Newton::measure()
 {
   const core::TimeStep& now = scheme_->now();
+  // Normals and weights of contact move with the bodies, so that one linearisation is not enough.
+  if (solution_->contact)
+    effort_ = {std::max(effort_.most, most_linearisations), 0.0,
+               std::min(effort_.later, model_->scene.tissue.newton_tolerance), true};
   forces_ = {};
   balance_ = {};
   if (!effort_.measured) return;
@@ -90,6 +101,7 @@ bool Newton::balanced()
     return false;
   if (model_->exact_volumes() && !cavity::closed(*model_->cavities, next_.cavities, walls_, now))
     return false;
+  if (solution_->contact && solution_->contact->residual > contact_tolerance(*model_)) return false;
   return gaps_closed(*model_, *solution_, rows_here());
 }
 

@@ -55,6 +55,8 @@ class Newton
   core::Outcome<Solution> solve_rows(solve::Linearisation& at);
   core::Outcome<constraint::Saddle> meet_laws(solve::Linearisation& at, constraint::System& system);
   void correct(Solution& solution);
+  contact::Contacts contacts() const { return {model_->contact, touched_, u_start_}; }
+  void end_contact(Solution& solution) const;
   void measure();
   double largest_increment() const;
   int refused(const tissue::Folded& folded) const;
@@ -64,6 +66,8 @@ class Newton
   const Scheme* scheme_;
   Effort effort_;
   State next_;
+  contact::State touched_;    ///< contact at the start of the step
+  fem::GlobalField u_start_;  ///< displacement there; empty without pairs
   cavity::Shape walls_;
   StepReport report_;
   std::optional<Solution> solution_;                           ///< of the last linearisation

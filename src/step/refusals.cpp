@@ -55,8 +55,14 @@ std::string place_of(const Scene& scene, const Solution& solution, int row)
     return "cavity '" + scene.cavities.cavities[static_cast<std::size_t>(cavity)].name +
            "': its wall is held all over";
   }
-  const Vec3 X = one.tissue.front().anchor.mean(
+  const Vec3 X = one.tissue.back().anchor.mean(
       [&](int node) -> Vec3 { return scene.mesh.x[static_cast<std::size_t>(node)]; });
+  if (one.body < 0) {
+    for (const contact::Group& group : solution.of_contact.groups)
+      if (row >= group.first && row < group.first + group.rows)
+        return "contact '" + scene.contact.pairs[static_cast<std::size_t>(group.pair)].name +
+               "' where the undeformed slave surface has " + at_place(X);
+  }
   return "needle '" + scene.needles[static_cast<std::size_t>(one.body)].name +
          "' where the undeformed tissue has " + at_place(X) + ", which a support holds";
 }

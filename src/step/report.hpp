@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "constraint/laws.hpp"
+#include "contact/contacts.hpp"
 #include "insertion/coupling.hpp"
 #include "step/state.hpp"
 
@@ -24,6 +25,7 @@ struct StepReport : constraint::LawReport
 {
   std::vector<NeedleReport> needles;
   std::vector<cavity::CavityReport> cavities;
+  std::vector<contact::PairReport> contact;
   tissue::Reactions holders;  ///< forces on the tissue by its holders, see tissue::Reactions [N]
   int pressure_updates = 0;   ///< most pressure updates of frozen cavities in a linearisation
   int linearisations = 0;

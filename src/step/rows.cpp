@@ -25,7 +25,9 @@ fem::OwnedField Solution::needle_forces(const fem::Space& space) const
 {
   if (system.empty()) return space.zero();
   const solve::Probes& probes = system.probes();
-  core::VecX forces = system.probe_forces(lambda());
+  core::VecX of_needles = lambda();
+  of_needles.segment(of_contact.first, of_contact.count).setZero();
+  core::VecX forces = system.probe_forces(of_needles);
   forces.tail(static_cast<Eigen::Index>(probes.wide.size())).setZero();
   return solve::spread(probes, forces, space);
 }
@@ -34,6 +36,8 @@ fem::OwnedField Solution::forces(const Model& model, const State& state, const c
                                  const core::TimeStep& now) const
 {
   fem::OwnedField forces = needle_forces(model.space);
+  // Contact pushes along the normals that the bodies have now, at the places that they touch now.
+  if (contact) forces.value += contact->system.forces(contact->lambda, model.space).value;
   if (model.cavities) forces.value += model.cavities->forces(state.cavities, walls, now).value;
   return forces;
 }
@@ -49,6 +53,11 @@ double closed_gap(const Model& model)
 }
 
 }  // namespace
+
+double contact_tolerance(const Model& model)
+{
+  return closed_gap(model);
+}
 
 namespace {
 

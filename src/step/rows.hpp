@@ -23,11 +23,13 @@ struct Solution
   constraint::System system;
   std::vector<insertion::CouplingRows> of_needle;
   cavity::CavityRows of_cavities;
+  contact::Rows of_contact{};
+  std::optional<contact::Ending> contact{};  ///< at the end; nothing: no pair is near
   constraint::Saddle saddle{};
   core::VecX mobility{};  ///< of the rows, see law::mobility [m/N]
 
   const core::VecX& lambda() const { return saddle.multipliers.lambda; }
-  /// Hᵀλ of all rows except those of cavities [N].
+  /// Hᵀλ of the needles' rows [N].
   fem::OwnedField needle_forces(const fem::Space& space) const;
   /// Forces of needles and cavities on the tissue at `state` [N]. `walls`: the cavity walls there.
   fem::OwnedField forces(const Model& model, const State& state, const cavity::Shape& walls,
@@ -43,6 +45,9 @@ struct Solution
 /// nothing can move. `here`: the rows at the shape that the solution led to. Their gaps are not
 /// those of the solution, because rows turn with the shaft. Not collective.
 bool gaps_closed(const Model& model, const Solution& solution, const Rows& here);
+
+/// Residual up to which the laws of contact hold in the geometry at the end [m].
+double contact_tolerance(const Model& model);
 
 /// How much another linearisation would change the lateral forces on the beams, 0 to 1: the largest
 /// max f / (max |λ| + max f) of all beams, where f are the changes of the forces (docs/theory.md

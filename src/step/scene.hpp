@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cavity/settings.hpp"
+#include "contact/settings.hpp"
 #include "insertion/ground.hpp"
 #include "law/compare.hpp"
 #include "mesh/mesh.hpp"
@@ -36,6 +37,7 @@ struct Scene
   std::vector<needle::NeedleSettings> needles;
   insertion::InsertionSettings insertion;
   cavity::Settings cavities;
+  contact::Settings contact;
   law::Settings laws;
   std::vector<law::BenchmarkCase> compare;  ///< solvers timed on the same dense problems
   bool energy = false;                      ///< keep the energy account

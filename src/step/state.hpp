@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cavity/state.hpp"
+#include "contact/state.hpp"
 #include "insertion/state.hpp"
 #include "needle/needle.hpp"
 #include "tissue/tissue.hpp"
@@ -82,6 +83,7 @@ struct State
   std::vector<needle::NeedleState> needles;
   std::vector<insertion::InsertionState> insertions;  ///< by needle
   cavity::State cavities;
+  contact::State contact;
   std::optional<PreviousStep> before;  ///< with -time_scheme bdf2 only
   EnergyAccount energy;                ///< kept with -output_energy only
 
@@ -96,6 +98,7 @@ struct State
     v("needle", "", self.needles);
     v("insertion", "", self.insertions);
     v("cavities", "", self.cavities);
+    v("contact", "", self.contact);
     v("before", "", self.before);
     v("energy", "", self.energy);
   }

@@ -47,6 +47,7 @@ Outcome<Accepted> initial_state(Model& model)
     report.cavities =
         cavity::accept(*model.cavities, {state.tissue.u, shape, start}, state.cavities);
   }
+  report.contact.assign(model.contact.size(), {});
   const tissue::BoundaryConditions& boundary = model.scene.tissue.boundary;
   report.holders.tools.assign(boundary.displacements.size(), Vec3::Zero());
   report.holders.supports.assign(boundary.fixed.size(), Vec3::Zero());

@@ -153,6 +153,23 @@ if os.geteuid() != 0:  # root writes everywhere
     os.chmod(closed, stat.S_IRUSR | stat.S_IXUSR)
     refuses("folder without permission", 74, ["closed"], {"-output_dir": closed + "/x"})
 
+# Contact.
+touching = {"-obstacles": "floor", "-contact_pairs": "rest:z1:floor"}
+refuses("pair of two words", 64, ["-contact_pairs", "NAME:SLAVE:MASTER"], {"-contact_pairs": "rest:z1"})
+refuses("unknown slave", 65, ["zz1", "z1"], {**touching, "-contact_pairs": "rest:zz1:floor"}, ranks=(1, 3))
+refuses("unknown master", 65, ["rest", "flour", "floor"], {**touching, "-contact_pairs": "rest:z1:flour,b:z0:floor"})
+refuses("slave is master", 65, ["rest", "z1", "nodes in common"], {"-contact_pairs": "rest:z1:z1"})
+refuses("obstacle of nobody", 64, ["-obstacles", "floor"], {"-obstacles": "floor"})
+refuses("negative friction of contact", 64, ["-contact_friction"], {**touching, "-contact_friction": "-0.1"})
+refuses("shear limit without friction", 64, ["-contact_shear_limit", "rest"], {**touching, "-contact_shear_limit": "10"})
+refuses("sphere without radius", 64, ["-obstacle_floor_radius"], {**touching, "-obstacle_floor_shape": "sphere"})
+refuses("plane with radius", 64, ["-obstacle_floor_radius"], {**touching, "-obstacle_floor_radius": "1"})
+refuses("plane without normal", 64, ["-obstacle_floor_normal"], {**touching, "-obstacle_floor_normal": "0,0,0"})
+refuses("friction of an unknown pair", 64, ["-contact_reft_friction"], {**touching, "-contact_reft_friction": "0.1"})
+refuses("stale contact", 64, ["stale", "-contact_pairs"], {**touching, "-compliance_reuse": "stale", "-tissue_model": "corotational"})
+refuses("eta and contact", 64, ["-insertion_eta", "-contact_pairs"], {**touching, "-insertion_eta": "0.5"},
+        remove=["-insertion_friction_static", "-insertion_friction_dynamic"])
+
 unwritten = os.path.join(FOLDER, "unwritten")
 process = run({**small, "-check": "", "-output_dir": unwritten})
 check(process.returncode == 0 and not os.path.exists(unwritten),

@@ -62,6 +62,11 @@ work = ledger(completed(layers))
 check(work["assemblies"] == 1 and work["factorisations"] == 1,
       "puncture and cutting of linear tissue: one assembly and one factorisation")
 
+# Bodies that do not meet cost nothing.
+apart = {"-obstacles": "floor", "-obstacle_floor_origin": "0,0,-0.5", "-contact_pairs": "rest:bottom:floor"}
+free = ledger(completed({**layers, "-time_end": "0.5"}))
+check(free == ledger(completed({**layers, "-time_end": "0.5", **apart})), "a pair that is apart changes no count")
+
 gel = options("gel_insertion.opts")
 gel.update({"-time_end": "0.4"})
 work = ledger(completed(gel))

@@ -17,6 +17,8 @@ exact = {**ties, "-insertion_friction_static": "0", "-insertion_friction_dynamic
 plane = {**exact, "-needle_entry": "0,0.0123,0.02", "-insertion_merge": "0"}
 iterative = {**ties, "-time_end": "1", "-tissue_ksp_type": "cg", "-tissue_pc_type": "bjacobi",
              "-tissue_ksp_rtol": "1e-13"}
+contact = options("ball_on_block.opts")
+contact.update({"-time_end": "1.2", "-time_step": "0.15"})
 layers = options("layers.opts")
 layers.update({"-time_end": "3", "-output_every": "50"})
 steering = options("steering.opts")
@@ -73,6 +75,7 @@ for name, settings, tolerance in [
     ("gel, tight", {**gel, **tight, "-time_end": "1.2"}, 1e-10),
     ("ties, tight", {**ties, **tight}, 1e-10),
     ("pulsing vessel, tight", {**pulsing, **tight}, 1e-10),
+    ("contact of two bodies with friction", contact, 1e-8),
     ("five neo-Hookean tets", tiny_rubber, 1e-8),
     ("shared dilatation", shared, 1e-8), ("quadratic tets, BDF2", quadratic, 1e-8),
     ("neo-Hookean", rubber, 1e-8),

@@ -50,7 +50,8 @@ def step_by_step(what, settings):
 
 SHIPPED = {"small_insertion": 200, "gel_insertion": 224, "layers": 450, "bladder_puncture": 400, "close_points": 100,
            "compression_test": 5, "force_profile": 523, "gravity_sag": 50, "phantom": 3, "pulsing_vessel": 125,
-           "sideways": 50, "line_insertion": 224, "steering": 210, "two_laws": 5, "branch": 100}
+           "sideways": 50, "line_insertion": 224, "steering": 210, "two_laws": 5, "branch": 100,
+           "ball_on_block": 40}
 
 if LONG:
     for name, steps in SHIPPED.items():
@@ -69,6 +70,7 @@ else:
     from_the_middle("pulsing", deterministic(scene("pulsing_vessel.opts", time_end="0.4")), 13, ranks=2)
     from_the_middle("puncture", deterministic(scene("bladder_puncture.opts", time_end="5.4", time_step="0.05")), 61)
     from_the_middle("static", deterministic(scene("two_laws.opts")), 3)
+    from_the_middle("contact", deterministic(scene("ball_on_block.opts", time_end="1.2", time_step="0.1")), 7)
     step_by_step("small", {**small, "-time_end": "0.5"})
 
 # Run twice, or on other ranks.

@@ -165,6 +165,25 @@ TEST(LineCoupling, FrictionIsTauTimesDepth)
   EXPECT_NEAR(run.reports.back().needles[0].depth, 0.06, 1e-6);  // all of the block
 }
 
+// A tip that must cut gets as deep in short steps as in long ones, and hardly less deep than one
+// that need not.
+TEST(LineCoupling, ACuttingTipLosesNoDepth)
+{
+  for (const bool quadratic : {false, true}) {
+    const auto depth = [&](double cutting, double step) {
+      step::Scene scenario = along_line(quadratic, 4, 0.2);
+      scenario.insertion.tip.cutting = {cutting};
+      scenario.insertion.friction = test::same({5.0, 5.0, 0.0});
+      scenario.time.step = step;
+      return test::run(scenario).reports.back().needles[0].depth;
+    };
+    const double deep = depth(0.02, 0.05);
+    EXPECT_NEAR(depth(0.02, 0.0125), deep, 0.005 * deep);
+    EXPECT_NEAR(deep, depth(0.0, 0.05), 0.03 * deep);
+    EXPECT_GT(deep, 0.035);
+  }
+}
+
 // In and out ten times: the second cycle is the last, and nothing stays behind.
 TEST(LineCoupling, CyclesDoNotDrift)
 {

@@ -178,6 +178,24 @@ TEST(RestartOf, AnotherSolver)
   }
 }
 
+// A block that slides, and one that rests, on a rigid slope; with a needle in it.
+TEST(RestartOf, Contact)
+{
+  for (const double friction : {0.0, 0.2, 0.9}) {
+    SCOPED_TRACE(friction);
+    Scene scene = into_block(false);
+    scene.tissue.model = tissue::Model::corotational;
+    scene.tissue.boundary.fixed.clear();
+    scene.tissue.boundary.gravity = Vec3(3.0, 0, -9.0);
+    scene.needles[0].motion.velocity = 0.01;
+    scene.contact.obstacles = {{"floor"}};
+    scene.contact.pairs = {{"floor", "z0", "floor", friction}};
+    std::vector<double> lengths = uneven;
+    for (double& h : lengths) h *= 0.1;
+    expect_equal_from(scene, lengths, 4);
+  }
+}
+
 // Cavities of every model beside a needle, in linear tissue, which every model can be in.
 TEST(RestartOf, EveryModelOfCavity)
 {

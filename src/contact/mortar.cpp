@@ -1,0 +1,300 @@
+#include "contact/mortar.hpp"
+
+#include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <iterator>
+#include <map>
+
+#include "contact/clip.hpp"
+
+namespace trocar::contact {
+namespace {
+
+namespace bg = boost::geometry;
+using Point = bg::model::point<double, 3, bg::cs::cartesian>;
+using Box = bg::model::box<Point>;
+
+struct Bounds
+{
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 high = -low;
+
+  void add(const Vec3& x)
+  {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  Box grown(double by) const
+  {
+    return {Point(low.x() - by, low.y() - by, low.z() - by),
+            Point(high.x() + by, high.y() + by, high.z() + by)};
+  }
+};
+
+/// A flat triangle of a face.
+struct Flat
+{
+  int face;
+  std::array<std::size_t, 3> node;  ///< local nodes of the face
+  Triangle x;
+
+  Bounds bounds() const
+  {
+    Bounds bounds;
+    for (const Vec3& corner : x) bounds.add(corner);
+    return bounds;
+  }
+  /// Parameters on the face of a place with these barycentric coordinates in the triangle.
+  Param param(const Eigen::Vector3d& at) const
+  {
+    Param sum = Param::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += at[static_cast<Eigen::Index>(k)] * node_param(node[k]);
+    return sum;
+  }
+};
+
+std::vector<Flat> flats(const Surface& surface, const Deformation& now)
+{
+  std::vector<Flat> all;
+  const int count = surface.nodes_per_face();
+  for (int f = 0; f < surface.faces(); ++f) {
+    const FacePlaces face = surface.places(f, now);
+    for (int k = 0; k < flat_count(count); ++k) {
+      const std::array<std::size_t, 3> node = count == 3
+                                                  ? std::array<std::size_t, 3>{0, 1, 2}
+                                                  : flat_triangles()[static_cast<std::size_t>(k)];
+      all.push_back({f, node, {face.x[node[0]], face.x[node[1]], face.x[node[2]]}});
+    }
+  }
+  return all;
+}
+
+/// Integrals of one corner, not yet divided by `area`.
+struct Sums
+{
+  std::map<int, double> slave, master;
+  double gap = 0.0, area = 0.0;
+  Vec3 normal = Vec3::Zero();
+
+  void add(const Sums& other)
+  {
+    for (const auto& [node, weight] : other.slave) slave[node] += weight;
+    for (const auto& [node, weight] : other.master) master[node] += weight;
+    gap += other.gap;
+    area += other.area;
+    normal += other.normal;
+  }
+};
+
+/// A point of the integration: place and normal on the slave, weight [m²].
+struct SlavePoint
+{
+  int face;
+  Param at;
+  double weight;
+  Vec3 x, normal;
+};
+
+void add_weights(const Surface& surface, int face, const Param& at, double w,
+                 std::map<int, double>& weights)
+{
+  const FaceShape shape = face_shape(surface.nodes_per_face(), at);
+  for (int k = 0; k < surface.nodes_per_face(); ++k)
+    weights[surface.face(face)[static_cast<std::size_t>(k)]] += w * shape.value[k];
+}
+
+/// Integrates over the slave surface of a pair.
+class Mortar
+{
+ public:
+  Mortar(const Pair& pair, const Deformation& now)
+      : pair_(pair),
+        now_(now),
+        slave_(pair.slave),
+        corner_normal_(slave_.normals(now)),
+        sums_(slave_.corners().size())
+  {
+  }
+
+  std::vector<Meeting> run()
+  {
+    if (const auto* surface = std::get_if<Surface>(&pair_.master))
+      against(*surface);
+    else
+      against(std::get<Obstacle>(pair_.master));
+    join();
+    return meetings();
+  }
+
+ private:
+  SlavePoint slave_point(const FacePlaces& face, const Flat& flat, const Eigen::Vector3d& at,
+                         double area) const
+  {
+    SlavePoint point{flat.face, flat.param(at), area, {}, Vec3::Zero()};
+    const FacePoint place = face_point(face, point.at);
+    point.x = place.x;
+    const double parts = flat_count(face.count);
+    const double flat_area = 0.5 * (flat.x[1] - flat.x[0]).cross(flat.x[2] - flat.x[0]).norm();
+    point.weight *= area_element(place) / (parts * flat_area);
+    const FaceShape linear = face_shape(3, point.at);
+    for (std::size_t k = 0; k < 3; ++k)
+      point.normal +=
+          linear.value[static_cast<Eigen::Index>(k)] * corner_normal_[corner(flat.face, k)];
+    point.normal.normalize();
+    return point;
+  }
+  std::size_t corner(int face, std::size_t k) const
+  {
+    return static_cast<std::size_t>(slave_.corner_of(slave_.face(face)[k]));
+  }
+
+  /// Adds a point with the distance `gap` to what is before it.
+  template <class AddMaster>
+  void add(const SlavePoint& point, double gap, const Vec3& normal, const AddMaster& add_master)
+  {
+    const FaceShape linear = face_shape(3, point.at);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Sums& sums = sums_[corner(point.face, k)];
+      const double w = point.weight * linear.value[static_cast<Eigen::Index>(k)];
+      sums.gap += w * gap;
+      sums.area += w;
+      sums.normal += w * normal;
+      add_weights(slave_, point.face, point.at, w, sums.slave);
+      add_master(w, sums.master);
+    }
+  }
+
+  void against(const Surface& master)
+  {
+    const std::vector<Flat> others = flats(master, now_);
+    std::vector<std::pair<Box, int>> boxes;
+    for (std::size_t k = 0; k < others.size(); ++k)
+      boxes.emplace_back(others[k].bounds().grown(0.0), static_cast<int>(k));
+    const bg::index::rtree<std::pair<Box, int>, bg::index::quadratic<16>> tree(boxes);
+    for (const Flat& mine : flats(slave_, now_)) {
+      std::vector<std::pair<Box, int>> hits;
+      tree.query(bg::index::intersects(mine.bounds().grown(pair_.search)),
+                 std::back_inserter(hits));
+      std::sort(hits.begin(), hits.end(),
+                [](const auto& a, const auto& b) { return a.second < b.second; });
+      const FacePlaces face = slave_.places(mine.face, now_);
+      for (const auto& hit : hits)
+        overlapping(master, face, mine, others[static_cast<std::size_t>(hit.second)]);
+    }
+  }
+
+  void overlapping(const Surface& master, const FacePlaces& face, const Flat& mine,
+                   const Flat& other)
+  {
+    for (const Overlap& piece : overlap(mine.x, other.x, pair_.search)) {
+      const FacePlaces onto = master.places(other.face, now_);
+      for (const TrianglePoint& at : triangle_points()) {
+        const SlavePoint point =
+            slave_point(face, mine, piece.slave * at.at, at.weight * piece.area);
+        const Projection there =
+            project(onto, point.x, point.normal, other.param(piece.master * at.at));
+        if (!there.found || std::abs(there.t) > pair_.search) continue;
+        add(point, there.t, point.normal, [&](double w, std::map<int, double>& weights) {
+          add_weights(master, other.face, there.at, w, weights);
+        });
+      }
+    }
+  }
+
+  void against(const Obstacle& obstacle)
+  {
+    for (const Flat& mine : flats(slave_, now_)) {
+      const FacePlaces face = slave_.places(mine.face, now_);
+      const double area = 0.5 * (mine.x[1] - mine.x[0]).cross(mine.x[2] - mine.x[0]).norm();
+      for (const TrianglePoint& at : triangle_points()) {
+        const SlavePoint point = slave_point(face, mine, at.at, at.weight * area);
+        const Clearance there = clearance(obstacle, point.x);
+        add(point, there.distance, -there.outward, [](double, std::map<int, double>&) {});
+      }
+    }
+  }
+
+  /// Corners that cannot carry a multiplier of their own give their part to a neighbour. The
+  /// functions still add up to 1 on the covered part, which is all that a patch test needs.
+  void join()
+  {
+    constexpr double least_covered = 1e-3;
+    const std::vector<double> whole = slave_.areas(now_);
+    std::vector<bool> weak(sums_.size());
+    for (std::size_t j = 0; j < sums_.size(); ++j)
+      weak[j] = sums_[j].area < least_covered * whole[j] || (!pair_.held.empty() && pair_.held[j]);
+    for (std::size_t j = 0; j < sums_.size(); ++j) {
+      if (!weak[j]) continue;
+      int strongest = -1;
+      for (int near : slave_.neighbours(static_cast<int>(j))) {
+        const auto n = static_cast<std::size_t>(near);
+        if (weak[n]) continue;
+        if (strongest < 0 || sums_[n].area > sums_[static_cast<std::size_t>(strongest)].area)
+          strongest = near;
+      }
+      if (strongest >= 0 && sums_[j].area > 0.0)
+        sums_[static_cast<std::size_t>(strongest)].add(sums_[j]);
+      sums_[j] = {};
+    }
+  }
+
+  std::vector<Meeting> meetings() const
+  {
+    std::vector<Meeting> found;
+    const bool obstacle = std::holds_alternative<Obstacle>(pair_.master);
+    for (std::size_t j = 0; j < sums_.size(); ++j) {
+      const Sums& sums = sums_[j];
+      if (!(sums.area > 0.0)) continue;
+      const double gap = sums.gap / sums.area;
+      if (obstacle && gap > pair_.search) continue;
+      Meeting meeting{slave_.corners()[j], {}, {}, gap, corner_normal_[j], sums.area};
+      if (obstacle) meeting.normal = sums.normal.normalized();
+      meeting.slave = mean(sums.slave, sums.area);
+      if (!obstacle) meeting.master = mean(sums.master, sums.area);
+      found.push_back(std::move(meeting));
+    }
+    return found;
+  }
+  static constraint::Anchor mean(std::map<int, double> weights, double area)
+  {
+    for (auto& [node, weight] : weights) weight /= area;
+    return constraint::anchor_of(weights);
+  }
+
+  const Pair& pair_;
+  const Deformation& now_;
+  const Surface& slave_;
+  std::vector<Vec3> corner_normal_;
+  std::vector<Sums> sums_;  ///< by corner
+};
+
+Bounds bounds_of(const Surface& surface, const Deformation& now)
+{
+  Bounds bounds;
+  for (int f = 0; f < surface.faces(); ++f) {
+    const FacePlaces face = surface.places(f, now);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(face.count); ++k) bounds.add(face.x[k]);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+std::vector<Meeting> meet(const Pair& pair, const Deformation& now)
+{
+  return Mortar(pair, now).run();
+}
+
+bool near(const Pair& pair, const Deformation& now)
+{
+  const Bounds mine = bounds_of(pair.slave, now);
+  if (const auto* surface = std::get_if<Surface>(&pair.master))
+    return bg::intersects(mine.grown(pair.search), bounds_of(*surface, now).grown(0.0));
+  const Vec3 middle = 0.5 * (mine.low + mine.high);
+  const double reach = 0.5 * (mine.high - mine.low).norm() + pair.search;
+  return clearance(std::get<Obstacle>(pair.master), middle).distance < reach;
+}
+
+}  // namespace trocar::contact

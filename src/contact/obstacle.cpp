@@ -1,0 +1,16 @@
+#include "contact/obstacle.hpp"
+
+namespace trocar::contact {
+
+Clearance clearance(const Obstacle& obstacle, const Vec3& x)
+{
+  const Vec3 axis = obstacle.normal.normalized();
+  Vec3 from = x - obstacle.origin;
+  if (obstacle.shape == Obstacle::Shape::plane) return {from.dot(axis), axis};
+  if (obstacle.shape == Obstacle::Shape::cylinder) from -= axis.dot(from) * axis;
+  const double far = from.norm();
+  if (!(far > 0.0)) return {-obstacle.radius, axis.unitOrthogonal()};
+  return {far - obstacle.radius, from / far};
+}
+
+}  // namespace trocar::contact

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "constraint/set.hpp"
+
+namespace trocar::contact {
+
+using core::Vec3;
+
+/// A slave corner that touched at the end of a step. Friction is measured from where it last
+/// slipped: with the weights of then, from the tangential distance of then.
+struct Touch
+{
+  int node = -1;  ///< file node of the corner
+  bool stuck = false;
+  Vec3 lambda = Vec3::Zero();        ///< multipliers (n, t1, t2) [N]
+  double area = 0.0;                 ///< covered ∫φ [m²]
+  constraint::Anchor slave, master;  ///< weights; no master nodes: an obstacle
+  Vec3 apart = Vec3::Zero();  ///< (0, t1, t2): tangential distance from slave to master then [m]
+  Vec3 place = Vec3::Zero();  ///< mean place of the slave then, on an obstacle; else zero [m]
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("node", "1", self.node);
+    v("stuck", "1", self.stuck);
+    v("lambda", "N", self.lambda);
+    v("area", "m^2", self.area);
+    v("slave", "", self.slave);
+    v("master", "", self.master);
+    v("apart", "m", self.apart);
+    v("place", "m", self.place);
+  }
+};
+
+/// The touching corners of one pair, by ascending node.
+struct PairState
+{
+  std::vector<Touch> touches;
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("touch", "", self.touches);
+  }
+};
+
+struct State
+{
+  std::vector<PairState> pairs;
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("pair", "", self.pairs);
+  }
+};
+
+}  // namespace trocar::contact

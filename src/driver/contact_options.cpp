@@ -1,0 +1,103 @@
+#include "driver/contact_options.hpp"
+
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/words.hpp"
+#include "driver/option_kinds.hpp"
+
+namespace trocar::driver {
+
+void add_contact_options(std::vector<OptionSpec>& t)
+{
+  t.push_back(list("contact_pairs",
+                   "surfaces that may touch: NAME:SLAVE:MASTER,… (SLAVE: a surface, better the "
+                   "finer; MASTER: a surface or an obstacle)"));
+  with_override(t, not_negative("contact_friction", "0", "1", "Coulomb's coefficient of contact"),
+                "<pair>");
+  with_override(t,
+                not_negative("contact_shear_limit", "0", "Pa",
+                             "largest shear stress of contact with friction; 0 = none"),
+                "<pair>");
+  with_override(t,
+                not_negative("contact_search", "0", "m",
+                             "farthest distance that is looked at; 0 = a mean edge of the slave"),
+                "<pair>");
+  t.push_back(list("obstacles", "rigid bodies that tissue may touch"));
+  t.push_back(choice("obstacle_<obstacle>_shape", "plane", {"plane", "sphere", "cylinder"},
+                     "half space, ball, or long cylinder"));
+  t.push_back(vector("obstacle_<obstacle>_origin", "0,0,0", "m",
+                     "a point of the plane or of the cylinder's axis, the ball's middle"));
+  t.push_back(vector("obstacle_<obstacle>_normal", "0,0,1", "1",
+                     "out of the half space; along the cylinder's axis"));
+  t.push_back(not_negative("obstacle_<obstacle>_radius", "0", "m", "of ball and cylinder"));
+}
+
+namespace {
+
+using core::Options;
+
+contact::Obstacle read_obstacle(Options& options, const std::string& name)
+{
+  using Shape = contact::Obstacle::Shape;
+  const std::map<std::string, Shape> shapes{
+      {"plane", Shape::plane}, {"sphere", Shape::sphere}, {"cylinder", Shape::cylinder}};
+  const std::string at = "obstacle_<obstacle>_";
+  const auto bad = [&](const std::string& option, const std::string& why) {
+    return core::option_error("option -obstacle_" + name + "_" + option + ": " + why);
+  };
+  contact::Obstacle obstacle{
+      name, shapes.at(options.text(at + "shape", name)), options.vector(at + "origin", name),
+      options.vector(at + "normal", name), options.real(at + "radius", name)};
+  const bool plane = obstacle.shape == Shape::plane;
+  if (plane && options.given_for(at + "radius", name)) throw bad("radius", "a plane has none");
+  if (!plane && !(obstacle.radius > 0.0)) throw bad("radius", "must be positive");
+  if (obstacle.shape == Shape::sphere && options.given_for(at + "normal", name))
+    throw bad("normal", "a sphere has none");
+  if (!(obstacle.normal.norm() > 0.0)) throw bad("normal", "must not be zero");
+  return obstacle;
+}
+
+/// The three words of NAME:SLAVE:MASTER.
+std::vector<std::string> words_of(const std::string& entry)
+{
+  std::vector<std::string> words;
+  std::istringstream text(entry);
+  for (std::string word; std::getline(text, word, ':');) words.push_back(word);
+  if (words.size() != 3 || words[1].empty() || words[2].empty())
+    throw core::option_error("option -contact_pairs: '" + entry +
+                             "' is not of the form NAME:SLAVE:MASTER");
+  return words;
+}
+
+}  // namespace
+
+contact::Settings read_contact(Options& options, const mesh::Mesh& mesh)
+{
+  contact::Settings settings;
+  std::set<std::string> used;
+  for (const std::string& name : options.new_names("obstacles"))
+    settings.obstacles.push_back(read_obstacle(options, name));
+  for (const std::string& entry : options.new_names("contact_pairs")) {
+    const std::vector<std::string> words = words_of(entry);
+    contact::PairSettings pair{words[0], words[1], words[2]};
+    mesh::surface_group(mesh, pair.slave);  // refuses an unknown one
+    pair.friction = options.real("contact_<pair>_friction", pair.name);
+    const double shear = options.real("contact_<pair>_shear_limit", pair.name);
+    if (shear > 0.0 && pair.friction == 0.0)
+      throw core::option_error("option -contact_shear_limit: pair '" + pair.name +
+                               "' has no friction to be limited (-contact_friction)");
+    if (shear > 0.0) pair.shear_limit = shear;
+    pair.search = options.real("contact_<pair>_search", pair.name);
+    used.insert(pair.master);
+    settings.pairs.push_back(pair);
+  }
+  for (const contact::Obstacle& obstacle : settings.obstacles)
+    if (used.count(obstacle.name) == 0)
+      throw core::option_error("option -obstacles: '" + obstacle.name +
+                               "' is in no pair (-contact_pairs)");
+  return settings;
+}
+
+}  // namespace trocar::driver
