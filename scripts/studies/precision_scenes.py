@@ -14,6 +14,10 @@ PINS = "on_x:yz,on_y:xz,on_z:xy"
 GEL = ("entry", "exit", "front", "back", "bottom", "top")
 P1 = ("p1", "p1 ksp", "p1_anp")
 P2 = ("p2", "p2_bbar", "p2_anp")
+# The second word of a method and what it changes; None takes an option of the scene away.
+WAYS = {"ksp": {"compliance_provider": "ksp"},
+        "uncorrected": {"insertion_radius_correction": None},
+        "line": {"insertion_radius_correction": None, "insertion_placement": "line"}}
 
 
 def moduli(poisson):
@@ -104,8 +108,9 @@ def l2_error(run, folder, field):
 
 
 def command_line(options):
-    """Words of a dict of options; a flag has the value ''."""
-    return [w for k, v in options.items() for w in (f"-{k}", *([str(v)] if v != "" else []))]
+    """Words of a dict of options; a flag has the value '', an option that is left out None."""
+    return [w for k, v in options.items() if v is not None
+            for w in (f"-{k}", *([str(v)] if v != "" else []))]
 
 
 def at_place(place):
@@ -120,16 +125,18 @@ def at_place(place):
 class Scene:
     """Options, meshes, sizes, and what is compared with what.
 
-    value    of a run: numbers; the error is relative to `exact`, or to the finest p2
+    value    of a run: numbers; the error is relative to `exact`, or to the finest `reference`
     error    of a run, where that is known by itself
     field    displacement prescribed on `held` surfaces, by place
+    methods  elements, each by itself or with one of WAYS
     """
 
     def __init__(self, name, options, geometry, sizes, value=None, exact=None, error=None,
-                 field=None, held=(), numbers=None, order=2):
+                 field=None, held=(), numbers=None, order=2, methods=P1 + P2, reference="p2"):
         self.name, self.options, self.geometry, self.sizes = name, options, geometry, sizes
         self.value, self.exact, self.error = value, exact, error
         self.field, self.held, self.numbers, self.order = field, held, numbers or {}, order
+        self.methods, self.reference = methods, reference
         self.meshes = {}
 
     def mesh(self, h, order):
@@ -146,11 +153,11 @@ class Scene:
 
     def words(self, h, method, folder):
         """Command line of a run."""
-        element, *provider = method.split()
+        element, *way = method.split()
         mesh = self.mesh(h, 1 if element.startswith("p1") else self.order)
         options = {"mesh": mesh, "tissue_element": element, **self.options}
-        if provider:
-            options["compliance_provider"] = provider[0]
+        for word in way:
+            options |= WAYS[word]
         if self.field:
             file = written_field(mesh, folder, self.field)
             options |= {f"boundary_{surface}_field": file for surface in self.held}
@@ -225,6 +232,7 @@ def scenes():
                        "insertion_radius_correction": ""},
                       "gel", {"p1": [12e-3, 8e-3, 5.5e-3, 4e-3, 2.8e-3, 2e-3],
                               "p2": [24e-3, 16e-3, 12e-3, 8e-3, 5.5e-3]},
-                      at_place(TARGET), order=1)
+                      at_place(TARGET), order=1, reference="p2 line",
+                      methods=P1 + P2 + ("p1 uncorrected", "p2 uncorrected", "p1 line", "p2 line"))
     return [cube(0.45), cube(0.4999), *map(shell, (0.3, 0.485, 0.4999)), eshelby(0.485), cantilever,
             phantom, insertion]

@@ -5,14 +5,15 @@ shell_NU      dP/dV of a cavity in a free hollow sphere against Lame's closed fo
 eshelby       liquid sphere in a strained body: pressure and shape against Eshelby's closed form
 cantilever    block held at one end under its weight: sag of the other end
 phantom       pressure in the fluid paper's phantom after 9 mm
-insertion     displacement of a target 2 cm beside a needle's path, 50 steps
+insertion     displacement of a target 2 cm beside a needle's path, 50 steps: points with and without
+              the radius correction, and a line
 swing, insertion_dt  the same two bodies over time steps: backward Euler and bdf2
 constraints   residual against time of the constraint solvers on the same problems
-Without a closed form the reference is p2 on a mesh finer than all others. Meshes are made anew for
-every size; round ones are curved for quadratic tets, but the phantom's: Gmsh folds some of its.
-Time is processor time of the whole process on one rank, median of three (of long runs one): other
-jobs blur it less than a clock's. Writes results/work_precision/{SCENE.csv,SCENE.png}, prints what
-1 % costs.
+Without a closed form the reference is p2 on a mesh finer than all others, in insertion with a line.
+Meshes are made anew for every size; round ones are curved for quadratic tets, but the phantom's:
+Gmsh folds some of its. Time is processor time of the whole process on one rank, median of three (of
+long runs one): other jobs blur it less than a clock's. Writes
+results/work_precision/{SCENE.csv,SCENE.png}, prints what 1 % costs.
 """
 import argparse
 import resource
@@ -28,7 +29,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from common import ROOT, save, write_table
-from precision_scenes import P1, P2, scenes
+from precision_scenes import scenes
 from precision_steps import SCHEMES, SOLVERS, STEPS, constraint_solvers, time_steps
 
 LONG = 8.0  # [s]: such runs are timed once
@@ -62,7 +63,7 @@ def timed(words, folder, repeats):
 def over_meshes(scene, folder, repeats, quick):
     """Rows of all methods and sizes of a scene."""
     rows = []
-    for method in P1 + P2:
+    for method in scene.methods:
         sizes = scene.sizes[method[:2]]
         for h in sizes[:1] if quick else sizes:
             seconds = timed(scene.words(h, method, folder), folder / "run", repeats)
@@ -76,7 +77,7 @@ def over_meshes(scene, folder, repeats, quick):
     exact = scene.exact
     if exact is None:
         h = FINER * scene.sizes["p2"][0 if quick else -1]
-        if timed(scene.words(h, "p2", folder), folder / "run", 1) is None:
+        if timed(scene.words(h, scene.reference, folder), folder / "run", 1) is None:
             raise SystemExit(f"{scene.name}: no reference")
         exact, _ = scene.judge(folder / "run")
     return with_errors(rows, exact)
@@ -136,7 +137,8 @@ def draw(name, rows, methods, folder):
     for axis, (key, label) in zip(axes[0], keys):
         for method in methods:
             mine = [r for r in rows if r["method"] == method]
-            axis.loglog([r[key] for r in mine], [r["error"] for r in mine], "o-", ms=4,
+            axis.loglog([r[key] for r in mine], [r["error"] for r in mine],
+                        "s--" if method.split()[1:] else "o-", ms=4,
                         label=method.replace("_", " ") if len(keys) == 1 else method)
         if name != "constraints":
             axis.axhline(0.01, color="k", lw=0.6, ls=":")
@@ -179,7 +181,8 @@ def main():
     repeats = 1 if args.quick else 3
     for name in args.scenes or names:
         if name in by_mesh:
-            report(name, over_meshes(by_mesh[name], folder, repeats, args.quick), P1 + P2, folder)
+            scene = by_mesh[name]
+            report(name, over_meshes(scene, folder, repeats, args.quick), scene.methods, folder)
         elif name in STEPS:
             report(name, over_steps(name, folder, repeats, args.quick), SCHEMES, folder)
         else:
