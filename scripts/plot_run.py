@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Plots a result folder: base force against insertion, and the needle in a cut through the tissue.
 
-usage: plot_run.py FOLDER     writes FOLDER/force.png, FOLDER/cut.png, FOLDER/cavities.png and
-                              FOLDER/pv_curve.png, as far as the run has them
+usage: plot_run.py FOLDER     writes FOLDER/force.png, FOLDER/cut.png, FOLDER/cavities.png,
+                              FOLDER/contact.png and FOLDER/pv_curve.png, as far as the run has them
 """
 import sys
 from pathlib import Path
@@ -133,6 +133,27 @@ def cavities_figure(run):
     return figure
 
 
+def contact_figure(run):
+    """Forces of the pairs, and how much of them touches, against time."""
+    time = run["history/time"][:]
+    figure, (force, area, corners) = plt.subplots(1, 3, figsize=(12.6, 3.8), constrained_layout=True)
+    for name, pair in run["history/contact"].items():
+        for k, axis in enumerate("xyz"):
+            force.plot(time, pair["force"][:, k], label=f"{name} {axis}")
+        area.plot(time, 1e4 * pair["area"][:], label=name)
+        corners.plot(time, pair["sticking"][:], label=f"{name}: sticking")
+        corners.plot(time, pair["slipping"][:], label=f"{name}: slipping")
+    force.set(ylabel="force on the master [N]", title="Contact")
+    area.set(ylabel="touching area [cm²]", title="Area")
+    corners.set(ylabel="corners", title="Slave corners that touch")
+    for one in (force, area, corners):
+        settle(one)
+        one.set_xlabel("time [s]")
+        one.grid(alpha=0.3)
+        one.legend(frameon=False, fontsize=8)
+    return figure
+
+
 def pv_figure(run):
     curve = run["pv_curve"]
     ratio = curve["volume_ratio"][:]
@@ -157,6 +178,8 @@ def figures(run, folder):
         found["pv_curve.png"] = pv_figure(run)
     elif rows > 1 and {"cavity", "boundary"} & set(run["history"]):
         found["cavities.png"] = cavities_figure(run)
+    if rows > 1 and "contact" in run["history"]:
+        found["contact.png"] = contact_figure(run)
     cut = cut_figure(run, folder, names(run))
     if cut:
         found["cut.png"] = cut

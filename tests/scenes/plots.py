@@ -77,4 +77,10 @@ low, high = panel.get_ylim()
 check(np.ptp(volume) < 1e-9 * volume[0], "the fluid keeps its volume")
 check(high - low > 0.05 * volume[0], f"and the axis does not blow its round-off up ({low} to {high} ml)")
 check(panel.yaxis.get_major_formatter().get_offset() == "", "nor has it an offset")
+
+# What touches is drawn as it is.
+touching = options("ball_on_block.opts")
+touching.update({"-time_end": "0.2"})
+area = [ax for ax in pictures(touching)["contact.png"].axes if ax.get_title() == "Area"][0].get_lines()[0].get_ydata()
+check(area[0] == 0.0 and 0.01 < area[-1] < 1.0, f"the touching area grows from nothing, in cm² ({area[-1]})")
 finish()
