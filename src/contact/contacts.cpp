@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/failure.hpp"
 #include "core/words.hpp"
@@ -55,6 +56,11 @@ std::vector<Pair> pairs_of(const Settings& settings, const mesh::Mesh& mesh,
       const bool held = fixed.fixed(node, 0) && fixed.fixed(node, 1) && fixed.fixed(node, 2);
       pair.held.push_back(held || taken);
     }
+    if (std::find(pair.held.begin(), pair.held.end(), false) == pair.held.end())
+      throw core::data_error("option -contact_pairs: no corner of slave '" + one.slave +
+                             "' of pair '" + one.name +
+                             "' can carry a force: each is prescribed, or slave of a pair before "
+                             "(exchange slave and master)");
     pairs.push_back(std::move(pair));
   }
   return pairs;
@@ -213,11 +219,12 @@ State accept(const Contacts& contacts, const Ending& ending, const Deformation& 
   State state;
   state.pairs.resize(contacts.pairs.size());
   reports.assign(contacts.pairs.size(), {});
+  std::set<int> reached;  // pairs
   for (const Group& group : ending.rows.groups) {
     PairReport& report = reports[static_cast<std::size_t>(group.pair)];
     const Meeting& at = group.meeting;
-    const double least = report.weighted_gap;
-    report.weighted_gap = report.area == 0.0 && least == 0.0 ? at.gap : std::min(least, at.gap);
+    const bool first = reached.insert(group.pair).second;
+    report.weighted_gap = first ? at.gap : std::min(report.weighted_gap, at.gap);
     Touch touch;
     touch.node = at.node;
     touch.area = at.area;
@@ -226,8 +233,8 @@ State accept(const Contacts& contacts, const Ending& ending, const Deformation& 
     report.force += group.frame * touch.lambda;
     report.area += at.area;
     const Vec3 slip = group.rows > 1 ? slip_of(group, contacts, now) : Vec3::Zero();
-    report.friction_work += touch.lambda.dot(slip);
     touch.stuck = group.rows > 1 && slip.norm() <= tolerance;
+    if (!touch.stuck) report.friction_work += touch.lambda.dot(slip);
     ++(touch.stuck ? report.sticking : report.slipping);
     if (touch.stuck && group.touch) {
       touch.slave = group.touch->slave;

@@ -69,11 +69,11 @@ Ending ending(const Contacts& contacts, const Deformation& now, const Rows& solv
 /// Results of one pair. Forces act on the master.
 struct PairReport
 {
-  Vec3 force = Vec3::Zero();  ///< [N]
-  double area = 0.0;          ///< of the touching corners [m²]
-  double weighted_gap = 0.0;  ///< least of the corners in reach [m]; 0: none is
-  int sticking = 0, slipping = 0;
-  double friction_work = 0.0;  ///< Σ λ·slip of the step, not positive [J]
+  Vec3 force = Vec3::Zero();       ///< [N]
+  double area = 0.0;               ///< of the touching corners [m²]
+  double weighted_gap = 0.0;       ///< least of the corners in reach [m]; 0: none is
+  int sticking = 0, slipping = 0;  ///< touching corners; without friction all slip
+  double friction_work = 0.0;      ///< Σ λ·slip of the step, not positive [J]
 };
 
 /// The state after the step, and the results. Slips up to `tolerance` [m] count as sticking.

@@ -168,10 +168,10 @@ class Mortar
 
   void against(const Surface& master)
   {
-    const std::vector<Flat> others = flats(master, now_);
+    others_ = flats(master, now_);
     std::vector<std::pair<Box, int>> boxes;
-    for (std::size_t k = 0; k < others.size(); ++k)
-      boxes.emplace_back(others[k].bounds().grown(0.0), static_cast<int>(k));
+    for (std::size_t k = 0; k < others_.size(); ++k)
+      boxes.emplace_back(others_[k].bounds().grown(0.0), static_cast<int>(k));
     const bg::index::rtree<std::pair<Box, int>, bg::index::quadratic<16>> tree(boxes);
     for (const Flat& mine : flats(slave_, now_)) {
       std::vector<std::pair<Box, int>> hits;
@@ -180,8 +180,9 @@ class Mortar
       std::sort(hits.begin(), hits.end(),
                 [](const auto& a, const auto& b) { return a.second < b.second; });
       const FacePlaces face = slave_.places(mine.face, now_);
-      for (const auto& hit : hits)
-        overlapping(master, face, mine, others[static_cast<std::size_t>(hit.second)]);
+      hits_.clear();
+      for (const auto& hit : hits) hits_.push_back(hit.second);
+      for (int hit : hits_) overlapping(master, face, mine, others_[static_cast<std::size_t>(hit)]);
     }
   }
 
@@ -195,12 +196,30 @@ class Mortar
             slave_point(face, mine, piece.slave * at.at, at.weight * piece.area);
         const Projection there =
             project(onto, point.x, point.normal, other.param(piece.master * at.at));
-        if (!there.found || std::abs(there.t) > pair_.search) continue;
+        if (!there.found || std::abs(there.t) > pair_.search || behind(point, there.t)) continue;
         add(point, there.t, point.normal, [&](double w, std::map<int, double>& weights) {
           add_weights(master, other.face, there.at, w, weights);
         });
       }
     }
+  }
+
+  /// True when another master face is met nearer than at the distance t: a body may have several
+  /// layers within the search distance. Nearer by less than a tenth of its edge is the same layer.
+  bool behind(const SlavePoint& point, double t) const
+  {
+    constexpr double same = 0.1, rim = 1e-9;
+    for (int hit : hits_) {
+      const Triangle& x = others_[static_cast<std::size_t>(hit)].x;
+      core::Mat3 sides;
+      sides << x[1] - x[0], x[2] - x[0], -point.normal;
+      const Vec3 normal = sides.col(0).cross(sides.col(1));
+      if (normal.dot(point.normal) >= -0.2 * normal.norm()) continue;
+      const Vec3 at = sides.inverse() * (point.x - x[0]);
+      const bool inside = at[0] >= -rim && at[1] >= -rim && at[0] + at[1] <= 1.0 + rim;
+      if (inside && std::abs(at[2]) < std::abs(t) - same * sides.col(0).norm()) return true;
+    }
+    return false;
   }
 
   void against(const Obstacle& obstacle)
@@ -234,8 +253,9 @@ class Mortar
         if (strongest < 0 || sums_[n].area > sums_[static_cast<std::size_t>(strongest)].area)
           strongest = near;
       }
-      if (strongest >= 0 && sums_[j].area > 0.0)
-        sums_[static_cast<std::size_t>(strongest)].add(sums_[j]);
+      const bool held = !pair_.held.empty() && pair_.held[j];
+      if (strongest < 0 && !held) continue;  // nobody takes its part
+      if (strongest >= 0) sums_[static_cast<std::size_t>(strongest)].add(sums_[j]);
       sums_[j] = {};
     }
   }
@@ -267,7 +287,9 @@ class Mortar
   const Deformation& now_;
   const Surface& slave_;
   std::vector<Vec3> corner_normal_;
-  std::vector<Sums> sums_;  ///< by corner
+  std::vector<Sums> sums_;    ///< by corner
+  std::vector<Flat> others_;  ///< of the master
+  std::vector<int> hits_;     ///< those near the present triangle of the slave
 };
 
 Bounds bounds_of(const Surface& surface, const Deformation& now)

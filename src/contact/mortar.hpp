@@ -21,7 +21,7 @@ struct Pair
   double friction = 0.0;                                   ///< Coulomb's coefficient
   double shear = std::numeric_limits<double>::infinity();  ///< limit of the shear stress [Pa]
   double search = 0.0;       ///< farthest distance that is looked at [m]
-  std::vector<bool> held{};  ///< slave corners whose displacement is prescribed
+  std::vector<bool> held{};  ///< slave corners that are prescribed, or slave of a pair before
 };
 
 /// The surroundings of a slave corner j, with its linear function φ_j over the covered part of the
@@ -40,7 +40,7 @@ struct Meeting
 ///
 /// Segment to segment: each slave face is clipped with the master faces near it, and both sides are
 /// integrated with the same points, projected along the interpolated slave normal. So the forces of
-/// a multiplier on both sides add up to nothing. A corner that is held, or covered below 1e-3 of
+/// a multiplier on both sides add up to nothing. A held corner, or one covered below 1e-3 of
 /// its ∫φ_j, joins its strongest neighbour.
 std::vector<Meeting> meet(const Pair& pair, const Deformation& now);
 

@@ -76,12 +76,14 @@ std::vector<std::string> words_of(const std::string& entry)
 contact::Settings read_contact(Options& options, const mesh::Mesh& mesh)
 {
   contact::Settings settings;
-  std::set<std::string> used;
+  std::set<std::string> used, pairs;
   for (const std::string& name : options.new_names("obstacles"))
     settings.obstacles.push_back(read_obstacle(options, name));
   for (const std::string& entry : options.new_names("contact_pairs")) {
     const std::vector<std::string> words = words_of(entry);
     contact::PairSettings pair{words[0], words[1], words[2]};
+    if (!pairs.insert(pair.name).second)
+      throw core::option_error("option -contact_pairs: two pairs are named '" + pair.name + "'");
     mesh::surface_group(mesh, pair.slave);  // refuses an unknown one
     pair.friction = options.real("contact_<pair>_friction", pair.name);
     const double shear = options.real("contact_<pair>_shear_limit", pair.name);
@@ -93,6 +95,15 @@ contact::Settings read_contact(Options& options, const mesh::Mesh& mesh)
     used.insert(pair.master);
     settings.pairs.push_back(pair);
   }
+  for (const char* name : {"contact_friction", "contact_shear_limit", "contact_search"})
+    if (settings.pairs.empty() && options.given(name))
+      throw core::option_error("option -" + std::string(name) +
+                               ": there is no contact (-contact_pairs)");
+  for (const contact::Obstacle& obstacle : settings.obstacles)
+    for (const mesh::SurfaceGroup& surface : mesh.surfaces)
+      if (surface.name == obstacle.name)
+        throw core::option_error("option -obstacles: '" + obstacle.name +
+                                 "' is the name of a surface of the mesh");
   for (const contact::Obstacle& obstacle : settings.obstacles)
     if (used.count(obstacle.name) == 0)
       throw core::option_error("option -obstacles: '" + obstacle.name +

@@ -53,6 +53,8 @@ void refuse_beside_contact(const Scenario& scenario)
   const auto refuse = [](bool idle, const std::string& why) {
     if (idle) throw core::option_error("option -" + why + " (-contact_pairs)");
   };
+  refuse(scenario.time.newton_max > 0 && !scenario.time.is_static,
+         "time_newton_max: steps with contact are iterated until its laws hold at their end");
   refuse(scenario.pv.has_value(), "pv_curve: a sweep of one cavity knows no contact");
   refuse(scenario.tissue.reuse == solve::Reuse::stale,
          "compliance_reuse stale: contact is solved to its true residual");

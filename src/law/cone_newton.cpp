@@ -119,6 +119,20 @@ class Equations
   VecX F_;
 };
 
+/// Open groups get multipliers of exactly zero: what the linear solve leaves there is rounding.
+void open_exactly(const Problem& problem, const VecX& give, double tolerance, VecX& lambda)
+{
+  if (lambda.size() == 0) return;
+  VecX clean = lambda;
+  const VecX delta = problem.W * lambda + problem.g;
+  for (const Block& block : problem.blocks) {
+    const int n = block.first;
+    if (block.law.set == Law::Set::cone && give[n] > 0.0 && lambda[n] - delta[n] / give[n] <= 0.0)
+      clean.segment(n, block.law.rows()).setZero();
+  }
+  if (kkt_residual(problem, clean) <= tolerance) lambda = clean;
+}
+
 void describe(const Problem& problem, Multipliers& result)
 {
   const PivotedCholesky factor(problem.W);
@@ -157,6 +171,8 @@ Multipliers cone_newton(const Problem& problem, const Settings& settings, int mo
     lambda += Equations(problem, lambda, give).step();
     ++result.iterations;
   }
+  open_exactly(problem, give, settings.tolerance, result.lambda);
+  best = result.lambda.size() > 0 ? kkt_residual(problem, result.lambda) : best;
   result.residual = best;
   result.converged = best <= settings.tolerance;
   if (result.converged) {

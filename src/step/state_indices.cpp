@@ -77,6 +77,15 @@ void refuse_indices_of_nothing(const State& state, const fem::Space& space)
       before = jump;
     }
   }
+  for (const contact::PairState& pair : state.contact.pairs) {
+    int before = -1;
+    for (const contact::Touch& touch : pair.touches) {
+      among(touch.node, before + 1, nodes);
+      before = touch.node;
+      sound(touch.slave);
+      sound(touch.master);
+    }
+  }
 }
 
 }  // namespace trocar::step

@@ -166,6 +166,12 @@ refuses("sphere without radius", 64, ["-obstacle_floor_radius"], {**touching, "-
 refuses("plane with radius", 64, ["-obstacle_floor_radius"], {**touching, "-obstacle_floor_radius": "1"})
 refuses("plane without normal", 64, ["-obstacle_floor_normal"], {**touching, "-obstacle_floor_normal": "0,0,0"})
 refuses("friction of an unknown pair", 64, ["-contact_reft_friction"], {**touching, "-contact_reft_friction": "0.1"})
+refuses("two pairs of one name", 64, ["rest"], {**touching, "-contact_pairs": "rest:z1:floor,rest:z0:floor"})
+refuses("slave of two pairs", 65, ["again", "z1"], {**touching, "-contact_pairs": "rest:z1:floor,again:z1:floor"})
+refuses("slave that is held", 65, ["rest", "z0"], {**touching, "-contact_pairs": "rest:z0:floor"}, ranks=(1, 3))
+refuses("obstacle named like a surface", 64, ["z0", "surface"], {"-obstacles": "z0", "-contact_pairs": "rest:z1:z0"})
+refuses("friction of no contact", 64, ["-contact_friction"], {"-contact_friction": "0.3"})
+refuses("few linearisations and contact", 64, ["-time_newton_max", "-contact_pairs"], {**touching, "-time_newton_max": "2"})
 refuses("stale contact", 64, ["stale", "-contact_pairs"], {**touching, "-compliance_reuse": "stale", "-tissue_model": "corotational"})
 refuses("eta and contact", 64, ["-insertion_eta", "-contact_pairs"], {**touching, "-insertion_eta": "0.5"},
         remove=["-insertion_friction_static", "-insertion_friction_dynamic"])

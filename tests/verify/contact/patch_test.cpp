@@ -116,5 +116,33 @@ TEST(ContactPatch, PressureIsUniform)
         }
 }
 
+// A master with two layers within the search distance, both facing the slave: the nearer one is
+// met.
+TEST(ContactPatch, OfTwoLayersTheNearerIsMet)
+{
+  test::BlockShape lower{4, 4, 2, Vec3(wide, wide, high)}, slab{3, 3, 1, Vec3(wide, wide, 0.004)};
+  slab.map = [](const Vec3& X) { return Vec3(X + Vec3(0, 0, high)); };
+  test::BlockShape lid = slab;
+  lid.map = [](const Vec3& X) { return Vec3(X + Vec3(0, 0, high + 0.005)); };
+  step::Scene scene;
+  scene.mesh = test::joined(test::joined(test::block(lower), test::block(slab)), test::block(lid));
+  mesh::SurfaceGroup layers{"layers", mesh::surface_group(scene.mesh, "a_b_z0").faces};
+  for (const mesh::Face& face : mesh::surface_group(scene.mesh, "b_z0").faces)
+    layers.faces.push_back(face);
+  scene.mesh.surfaces.push_back(layers);
+  scene.tissue.model = tissue::Model::linear;
+  scene.tissue.materials.assign(3, {young, poisson, 1000.0, 0.0, 0.0});
+  scene.tissue.boundary.fixed = {{"a_b_z1", 7}, {"b_z1", 7}};
+  scene.tissue.boundary.displacements = {{"a_a_z0", Vec3(0, 0, 0.001), std::nullopt}};
+  scene.contact.pairs = {{"faces", "a_a_z1", "layers"}};
+  scene.time.is_static = true;
+  const contact::PairReport both = test::run(scene).reports.back().contact[0];
+  scene.contact.pairs[0].master = "a_b_z0";
+  const contact::PairReport near = test::run(scene).reports.back().contact[0];
+  EXPECT_GT(near.force.z(), 0.1);
+  EXPECT_NEAR(both.force.z(), near.force.z(), 1e-9);
+  EXPECT_NEAR(both.area, near.area, 1e-12);
+}
+
 }  // namespace
 }  // namespace trocar
