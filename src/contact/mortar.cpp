@@ -1,75 +1,14 @@
 #include "contact/mortar.hpp"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <iterator>
 #include <map>
 
-#include "contact/clip.hpp"
+#include "contact/flats.hpp"
 
 namespace trocar::contact {
 namespace {
-
-namespace bg = boost::geometry;
-using Point = bg::model::point<double, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Point>;
-
-struct Bounds
-{
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 high = -low;
-
-  void add(const Vec3& x)
-  {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  Box grown(double by) const
-  {
-    return {Point(low.x() - by, low.y() - by, low.z() - by),
-            Point(high.x() + by, high.y() + by, high.z() + by)};
-  }
-};
-
-/// A flat triangle of a face.
-struct Flat
-{
-  int face;
-  std::array<std::size_t, 3> node;  ///< local nodes of the face
-  Triangle x;
-
-  Bounds bounds() const
-  {
-    Bounds bounds;
-    for (const Vec3& corner : x) bounds.add(corner);
-    return bounds;
-  }
-  /// Parameters on the face of a place with these barycentric coordinates in the triangle.
-  Param param(const Eigen::Vector3d& at) const
-  {
-    Param sum = Param::Zero();
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += at[static_cast<Eigen::Index>(k)] * node_param(node[k]);
-    return sum;
-  }
-};
-
-std::vector<Flat> flats(const Surface& surface, const Deformation& now)
-{
-  std::vector<Flat> all;
-  const int count = surface.nodes_per_face();
-  for (int f = 0; f < surface.faces(); ++f) {
-    const FacePlaces face = surface.places(f, now);
-    for (int k = 0; k < flat_count(count); ++k) {
-      const std::array<std::size_t, 3> node = count == 3
-                                                  ? std::array<std::size_t, 3>{0, 1, 2}
-                                                  : flat_triangles()[static_cast<std::size_t>(k)];
-      all.push_back({f, node, {face.x[node[0]], face.x[node[1]], face.x[node[2]]}});
-    }
-  }
-  return all;
-}
 
 /// Integrals of one corner, not yet divided by `area`.
 struct Sums
@@ -291,16 +230,6 @@ class Mortar
   std::vector<Flat> others_;  ///< of the master
   std::vector<int> hits_;     ///< those near the present triangle of the slave
 };
-
-Bounds bounds_of(const Surface& surface, const Deformation& now)
-{
-  Bounds bounds;
-  for (int f = 0; f < surface.faces(); ++f) {
-    const FacePlaces face = surface.places(f, now);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(face.count); ++k) bounds.add(face.x[k]);
-  }
-  return bounds;
-}
 
 }  // namespace
 

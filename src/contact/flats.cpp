@@ -1,0 +1,31 @@
+#include "contact/flats.hpp"
+
+namespace trocar::contact {
+
+std::vector<Flat> flats(const Surface& surface, const Deformation& now)
+{
+  std::vector<Flat> all;
+  const int count = surface.nodes_per_face();
+  for (int f = 0; f < surface.faces(); ++f) {
+    const FacePlaces face = surface.places(f, now);
+    for (int k = 0; k < flat_count(count); ++k) {
+      const std::array<std::size_t, 3> node = count == 3
+                                                  ? std::array<std::size_t, 3>{0, 1, 2}
+                                                  : flat_triangles()[static_cast<std::size_t>(k)];
+      all.push_back({f, node, {face.x[node[0]], face.x[node[1]], face.x[node[2]]}});
+    }
+  }
+  return all;
+}
+
+Bounds bounds_of(const Surface& surface, const Deformation& now)
+{
+  Bounds bounds;
+  for (int f = 0; f < surface.faces(); ++f) {
+    const FacePlaces face = surface.places(f, now);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(face.count); ++k) bounds.add(face.x[k]);
+  }
+  return bounds;
+}
+
+}  // namespace trocar::contact
