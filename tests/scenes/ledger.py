@@ -63,7 +63,7 @@ check(work["assemblies"] == 1 and work["factorisations"] == 1,
       "puncture and cutting of linear tissue: one assembly and one factorisation")
 
 # Bodies that do not meet cost nothing.
-apart = {"-obstacles": "floor", "-obstacle_floor_origin": "0,0,-0.5", "-contact_pairs": "rest:bottom:floor"}
+apart = {"-obstacles": "floor", "-obstacle_floor_origin": "0,0,-0.5", "-contact_pairs": "rest:skin:floor"}
 free = ledger(completed({**layers, "-time_end": "0.5"}))
 check(free == ledger(completed({**layers, "-time_end": "0.5", **apart})), "a pair that is apart changes no count")
 
