@@ -58,7 +58,7 @@ TEST(OptionTable, NamesEveryOptionOnceAndInLowerCase)
 }
 
 // An option of one tissue, needle or cavity is read where the general one is: both are declared.
-// Loads of a surface and ways for fluid have no general one.
+// Loads of a surface, ways for fluid and obstacles have no general one.
 TEST(OptionTable, OverridesStandBesideTheGeneralOption)
 {
   std::set<std::string> names;
@@ -66,7 +66,9 @@ TEST(OptionTable, OverridesStandBesideTheGeneralOption)
   for (const std::string& name : names) {
     const auto open = name.find('<');
     if (open == std::string::npos) continue;
-    if (name.rfind("boundary_", 0) == 0 || name.rfind("conduit_", 0) == 0) continue;
+    if (name.rfind("boundary_", 0) == 0 || name.rfind("conduit_", 0) == 0 ||
+        name.rfind("obstacle_", 0) == 0)
+      continue;
     std::string general = name;
     general.erase(open, name.find('>') + 2 - open);
     EXPECT_TRUE(names.count(general)) << name;

@@ -77,7 +77,9 @@ TEST_F(MshFile, ShippedMeshesAreWhatGmshMakesOfThem)
       expect_equal(ours, test::read_with_gmsh(file, 1e-3));
       mesh::drop_repeated(ours);
       mesh::judge(ours);
-      EXPECT_EQ(ours.remarks, std::vector<std::string>());
+      const bool two = name == "ball_on_block";  // bodies, of which the reader tells
+      EXPECT_EQ(ours.remarks, two ? std::vector<std::string>{"the mesh has 2 separate parts"}
+                                  : std::vector<std::string>());
     }
   }
 }
