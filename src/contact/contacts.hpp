@@ -13,7 +13,7 @@
 namespace trocar::contact {
 
 /// The pairs of a scene. Throws Failure (64, 65) for unknown or unfit surfaces. Corners whose
-/// displacement is prescribed carry no multiplier.
+/// displacement is prescribed, or that are slave of a pair before, carry no multiplier.
 std::vector<Pair> pairs_of(const Settings& settings, const mesh::Mesh& mesh,
                            const fem::Dirichlet& fixed);
 
@@ -45,8 +45,8 @@ struct Rows
 };
 
 /// Adds the rows of all pairs at the displacement of `now`. λ > 0 of a normal row pushes the bodies
-/// apart; its δ is the weighted gap. A tangential δ is the slip since the corner touched last.
-/// `lambda`: multipliers to start from, see `multipliers_at`. Not collective.
+/// apart; its δ is the weighted gap. A tangential δ is the slip since the corner slipped last.
+/// Rows start from the multipliers of the last step. Not collective.
 Rows add_rows(const Contacts& contacts, const Deformation& now, constraint::Set& set);
 
 /// Multipliers by row of `rows`, taken from the rows of another geometry by pair and node; zero
