@@ -31,7 +31,8 @@ struct Solution
   const core::VecX& lambda() const { return saddle.multipliers.lambda; }
   /// Hᵀλ of the needles' rows [N].
   fem::OwnedField needle_forces(const fem::Space& space) const;
-  /// Forces of needles, contact and cavities on the tissue at `state` [N]. `walls`: the cavity walls there.
+  /// Forces of needles, contact and cavities on the tissue at `state` [N]. `walls`: the cavity
+  /// walls there.
   fem::OwnedField forces(const Model& model, const State& state, const cavity::Shape& walls,
                          const core::TimeStep& now) const;
   /// H_nᵀλ on all dofs of needle i [N, N m]; the needle feels the negative.
