@@ -11,7 +11,7 @@ const PressureResponses& PressureSearch::unit_pressure_responses(const State& st
 {
   constexpr std::size_t most_kept = 2;
   const std::vector<int> which = frozen(*cavities_, state);
-  const auto known = responses_.find(now.rates());
+  const auto known = responses_.find(now.operator_rates());
   // The number of responses grows when a cavity with a given pressure at the start joins the
   // search.
   if (known != responses_.end() && known->second.per_p.size() == which.size()) return known->second;
@@ -24,7 +24,7 @@ const PressureResponses& PressureSearch::unit_pressure_responses(const State& st
     if (proportional(*cavities_) && gain == 0.0)
       gain = line_gain(*cavities_, which[k], answers.per_p.back());
   }
-  return responses_[now.rates()] = std::move(answers);
+  return responses_[now.operator_rates()] = std::move(answers);
 }
 
 /// Responses with rows: w̃ = w + A⁻¹Hᵀ ∂λ/∂p, where rows that hold go on holding.

@@ -1,10 +1,24 @@
 #include "constraint/laws.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "law/solve.hpp"
 
 namespace trocar::constraint {
+namespace {
+
+/// The laws hold to the tolerance, or to the rounding of the gaps after free motion: a body that
+/// only contact holds moves far before the rows catch it.
+law::Settings above_rounding(law::Settings settings, const law::Problem& problem)
+{
+  constexpr double rounded = 1e3 * std::numeric_limits<double>::epsilon();
+  if (problem.g.size() > 0)
+    settings.tolerance = std::max(settings.tolerance, rounded * problem.g.cwiseAbs().maxCoeff());
+  return settings;
+}
+
+}  // namespace
 
 void Laws::use(solve::LaggedFactor& factor)
 {
@@ -27,7 +41,7 @@ Outcome<Done> Laws::meet(solve::LaggedFactor& factor, const core::VecX& free,
   for (;; ++settlements) {  // repeated only until nonlinear laws of fluids settle
     problem_ = system_->problem(W_, free);
     problem_.start = settlements > 0 ? answer_.lambda : last.converged ? last.lambda : start;
-    answer_ = law::solve(problem_, settings_->solver);
+    answer_ = law::solve(problem_, above_rounding(settings_->solver, problem_));
     ++settings_->ledger->constraint_solves;
     if (!answer_.converged)
       return core::Refusal{answer_.immovable < 0

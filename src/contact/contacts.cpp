@@ -98,6 +98,14 @@ Vec3 mean(const constraint::Anchor& anchor, const Deformation& now)
   return anchor.mean([&](int node) { return now.at(node); });
 }
 
+/// How far the master moved from the slave in the step [m].
+Vec3 moved_apart(const Meeting& at, const Contacts& contacts, const Deformation& now)
+{
+  const Deformation before{now.mesh, contacts.start};
+  return (mean(at.master, now) - mean(at.master, before)) -
+         (mean(at.slave, now) - mean(at.slave, before));
+}
+
 /// Slip of a group since it touched last, in the frame's tangents (0, t1, t2) [m].
 Vec3 slip_of(const Group& group, const Contacts& contacts, const Deformation& now)
 {
@@ -108,9 +116,7 @@ Vec3 slip_of(const Group& group, const Contacts& contacts, const Deformation& no
     for (int k = 1; k < 3; ++k) slip[k] = group.frame.col(k).dot(d) - group.touch->apart[k];
     return slip;
   }
-  const Deformation before{now.mesh, contacts.start};
-  const Vec3 moved = (mean(group.meeting.master, now) - mean(group.meeting.master, before)) -
-                     (mean(group.meeting.slave, now) - mean(group.meeting.slave, before));
+  const Vec3 moved = moved_apart(group.meeting, contacts, now);
   for (int k = 1; k < 3; ++k) slip[k] = group.frame.col(k).dot(moved);
   return slip;
 }
@@ -232,6 +238,8 @@ State accept(const Contacts& contacts, const Ending& ending, const Deformation& 
     if (!(touch.lambda[0] > 0.0)) continue;
     report.force += group.frame * touch.lambda;
     report.area += at.area;
+    report.normal_work +=
+        touch.lambda[0] * group.frame.col(0).dot(moved_apart(at, contacts, now));
     const Vec3 slip = group.rows > 1 ? slip_of(group, contacts, now) : Vec3::Zero();
     touch.stuck = group.rows > 1 && slip.norm() <= tolerance;
     if (!touch.stuck) report.friction_work += touch.lambda.dot(slip);

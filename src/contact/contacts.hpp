@@ -74,6 +74,9 @@ struct PairReport
   double weighted_gap = 0.0;       ///< least of the corners in reach [m]; 0: none is
   int sticking = 0, slipping = 0;  ///< touching corners; without friction all slip
   double friction_work = 0.0;      ///< Σ λ·slip of the step, not positive [J]
+  /// Work of the normal forces in the step: what closing gaps takes from the bodies' motion, not
+  /// positive but for normals that turn [J].
+  double normal_work = 0.0;
 };
 
 /// The state after the step, and the results. Slips up to `tolerance` [m] count as sticking.

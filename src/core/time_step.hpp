@@ -12,6 +12,7 @@ namespace trocar::core {
 struct Rates
 {
   double velocity = 0.0, acceleration = 0.0;
+  double mass = 0.0;  ///< s of a further term s M in the operator alone [1/s²]
 
   auto operator<=>(const Rates&) const = default;
 };
@@ -25,6 +26,9 @@ struct TimeStep
   double load = 1.0;  ///< share of gravity, traction and prescribed displacement (load steps)
   double lead = 1.0;  ///< factor in h v = lead (u - û): 1 backward Euler, 3/2 BDF2 with equal steps
   std::optional<double> interval{};  ///< h̄ > 0 in a = (v - v̂)/h̄ [s]; none: h
+  /// Rate s [1/s²] of s M in the static operator, where contact alone holds a body. Its force is
+  /// iterated away, so that no result depends on it (docs/theory.md section 14).
+  double proximal = 0.0;
   /// True for the state before the first step. It takes no time: nothing flows, slides or advances.
   bool start = false;
 
@@ -41,6 +45,8 @@ struct TimeStep
     if (is_static) return {};
     return {lead / h, 1.0 / interval.value_or(h)};
   }
+  /// Those of the tissue operator.
+  Rates operator_rates() const { return is_static ? Rates{0.0, 0.0, proximal} : rates(); }
 };
 
 }  // namespace trocar::core

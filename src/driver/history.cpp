@@ -120,7 +120,7 @@ void add_holders(const tissue::BoundaryConditions& boundary, List& list)
                 [k](const Moment& now) { return now.report.holders.supports[k]; });
 }
 
-void add_energy(List& list)
+void add_energy(bool touches, List& list)
 {
   using Account = step::EnergyAccount;
   const auto add = [&](const char* name, double Account::*part) {
@@ -133,6 +133,8 @@ void add_energy(List& list)
   add("friction", &Account::friction);
   add("cutting", &Account::cutting);
   add("damping", &Account::damping);
+  if (touches) add("contact", &Account::contact);
+  if (touches) add("contact_friction", &Account::contact_friction);
   list.number("energy/rest", "J", [](const Moment& now) { return now.state.energy.rest(); });
 }
 
@@ -220,7 +222,7 @@ std::vector<History> histories(const Scenario& scenario)
   for (std::size_t p = 0; p < scenario.contact.pairs.size(); ++p)
     add_contact(scenario.contact.pairs[p].name, p, list);
   add_holders(scenario.tissue.boundary, list);
-  if (scenario.energy) add_energy(list);
+  if (scenario.energy) add_energy(!scenario.contact.pairs.empty(), list);
   add_constraints(list);
   for (std::size_t i = 0; i < scenario.compare.size(); ++i)
     add_compared(scenario.compare[i].name, i, list);

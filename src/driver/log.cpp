@@ -172,6 +172,18 @@ void Log::goes_on(const step::State& state)
   energy_ = state.energy;
 }
 
+void Log::print_energy() const
+{
+  std::printf(
+      "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "
+      "+ friction %.4g + cutting %.4g + damping %.4g",
+      energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start,
+      energy_.friction, energy_.cutting, energy_.damping);
+  if (!scenario_->contact.pairs.empty())
+    std::printf(" + contact %.4g + its friction %.4g", energy_.contact, energy_.contact_friction);
+  std::printf(" + rest %.2g", energy_.rest());
+}
+
 void Log::finish(std::optional<double> stopped) const
 {
   if (!speaks()) return;
@@ -182,12 +194,7 @@ void Log::finish(std::optional<double> stopped) const
   if (!model_->needles.empty())
     std::printf("\ndissipated%s [J]: friction %.4g, cutting %.4g",
                 begun_ > 0.0 ? " since the checkpoint" : "", friction_, cutting_);
-  if (scenario_->energy)
-    std::printf(
-        "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "
-        "+ friction %.4g + cutting %.4g + damping %.4g + rest %.2g",
-        energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start,
-        energy_.friction, energy_.cutting, energy_.damping, energy_.rest());
+  if (scenario_->energy) print_energy();
   const char* folder = scenario_->output.folder.c_str();
   if (stopped)
     std::printf("\nstopped at the checkpoint of t = %.6g s after %.1f s: -restart %s goes on\n",

@@ -29,6 +29,7 @@ class Log
  private:
   void cavities(const cavity::Cavities& cavities) const;
   void warn(const step::State& state, const step::StepReport& report);
+  void print_energy() const;
   void warn_of_supports(const step::State& state);
   bool speaks() const;
 

@@ -147,7 +147,7 @@ bool all_for_cone_newton(const Problem& problem)
 {
   bool any = false;
   for (const Block& block : problem.blocks) {
-    any = any || block.law.set == Law::Set::cone;
+    any = any || block.law.one_sided();
     if (block.law.set == Law::Set::follower || block.law.set == Law::Set::disc) return false;
   }
   return any;

@@ -10,7 +10,7 @@ namespace trocar::law {
 /// `most` factorisations, or when the residual is not finite. Sets: zero, interval, cone.
 Multipliers cone_newton(const Problem& problem, const Settings& settings, int most);
 
-/// True when every set of the problem is one that `cone_newton` knows, and some set is a cone.
+/// True when every set of the problem is one that `cone_newton` knows, and some set is one-sided.
 bool all_for_cone_newton(const Problem& problem);
 
 }  // namespace trocar::law

@@ -57,6 +57,12 @@ struct Law
   }
 
   int rows() const;
+  /// A cone, or an interval without an upper end: bodies that touch, or are apart.
+  bool one_sided() const
+  {
+    const bool half = set == Set::interval && upper == std::numeric_limits<double>::infinity();
+    return set == Set::cone || half;
+  }
   bool operator==(const Law&) const = default;
 };
 

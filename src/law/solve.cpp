@@ -120,17 +120,19 @@ Multipliers solve(const Problem& problem, const Settings& settings)
   const auto follows = [&](const Block& block) {
     return block.law.set == Law::Set::follower || is_cone(block);
   };
-  if (std::none_of(problem.blocks.begin(), problem.blocks.end(), follows))
-    return solve_fixed_sets(problem, settings);
-  // Newton's method where many groups slip or stick: there the bounds settle slowly, or not at all.
+  // Newton's method where many groups slip, stick or open: there the bounds settle slowly, or not
+  // at all, and an interior point ends above the rounding errors of bodies that fall far.
   constexpr int most = 30;
-  const auto cones = std::count_if(problem.blocks.begin(), problem.blocks.end(), is_cone);
+  const auto open = std::count_if(problem.blocks.begin(), problem.blocks.end(),
+                                  [](const Block& block) { return block.law.one_sided(); });
   const bool newton =
-      settings.method == Method::automatic && cones > 1 && all_for_cone_newton(problem);
+      settings.method == Method::automatic && open > 1 && all_for_cone_newton(problem);
   if (newton) {
     Multipliers result = cone_newton(problem, settings, most);
     if (result.converged) return result;
   }
+  if (std::none_of(problem.blocks.begin(), problem.blocks.end(), follows))
+    return solve_fixed_sets(problem, settings);
   Multipliers settled = settle_bounds(problem, settings);
   if (!newton || settled.converged || settled.lambda.size() != problem.rows()) return settled;
   Problem again = problem;

@@ -3,6 +3,7 @@
 #include "cavity/wall.hpp"
 #include "mesh/partition.hpp"
 #include "mesh/quadratic.hpp"
+#include "tissue/bodies.hpp"
 
 namespace trocar::post {
 

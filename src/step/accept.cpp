@@ -40,12 +40,14 @@ EnergyAccount account(const Model& model, const State& old, const Scheme& scheme
     energy.friction -= done.coupling.friction_work;
     energy.cutting -= done.coupling.cutting_work;
   }
-  for (const contact::PairReport& pair : newton.report().contact)
-    energy.friction -= pair.friction_work;
+  for (const contact::PairReport& pair : newton.report().contact) {
+    energy.contact -= pair.normal_work;
+    energy.contact_friction -= pair.friction_work;
+  }
   // At the start all sums are zero, and the stored energy is kept as `stored_at_start`.
   if (now.start) {
     const double stored = energy.elastic + energy.kinetic;
-    energy = {energy.elastic, energy.kinetic, stored, 0.0, 0.0, 0.0, 0.0};
+    energy = {energy.elastic, energy.kinetic, stored};
   }
   return energy;
 }

@@ -10,13 +10,12 @@ Model::Model(const Scene& of, const base::Comm& comm)
             tissue::overlap_layers(of.tissue.dilatation)),
       tissue(of.mesh, space, of.tissue, ledger)
 {
-  if (scene.time.is_static || scene.time.start_in_equilibrium)
-    tissue::require_supports(tissue.fixed(), scene.mesh);
   if (!scene.cavities.cavities.empty()) {
     cavities.emplace(scene.mesh, space, scene.cavities, ledger);
     pressure_search.emplace(*cavities, ledger);
   }
   contact = contact::pairs_of(scene.contact, scene.mesh, tissue.fixed());
+  if (scene.time.is_static || scene.time.start_in_equilibrium) hold_bodies();
   driven_at_start = !scene.tissue.boundary.displacements.empty() || cavities.has_value();
   for (const needle::NeedleSettings& settings : scene.needles) {
     needles.emplace_back(settings);
@@ -26,6 +25,30 @@ Model::Model(const Scene& of, const base::Comm& comm)
   if (needles.empty()) return;
   locator.emplace(scene.mesh);
   ground.emplace(scene.mesh, *locator, scene.insertion, scene.tissue.materials);
+}
+
+bool Model::in_contact(std::size_t body) const
+{
+  const auto touches = [&](const contact::Surface& surface) {
+    return std::any_of(surface.corners().begin(), surface.corners().end(), [&](int node) {
+      return bodies.of_node[static_cast<std::size_t>(node)] == static_cast<int>(body);
+    });
+  };
+  return std::any_of(contact.begin(), contact.end(), [&](const contact::Pair& pair) {
+    const auto* master = std::get_if<contact::Surface>(&pair.master);
+    return touches(pair.slave) || (master && touches(*master));
+  });
+}
+
+/// In statics supports hold every body, or contact does.
+void Model::hold_bodies()
+{
+  bodies = tissue::bodies_of(scene.mesh, tissue.fixed());
+  for (std::size_t b = 0; b < bodies.all.size(); ++b) {
+    if (bodies.all[b].held) continue;
+    if (!in_contact(b)) tissue::refuse_free(bodies, scene.mesh, b);
+    proximal = tissue::small_inertia(bodies, scene.tissue.materials);
+  }
 }
 
 bool Model::beams() const

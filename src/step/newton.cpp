@@ -107,12 +107,16 @@ bool Newton::balanced()
 
 core::Outcome<core::Done> Newton::lead_on()
 {
-  constexpr double slow = 0.5;
-  constexpr int most_slow = 3;
+  constexpr double slow = 0.5, still = 0.999, rounding = 1e-6;
+  constexpr int most_slow = 3, most_still = 5;
   const bool admissible = inverted_ < 0;
   double rest = admissible ? balance_.norm : unbalanced_before_;
   if (!admissible || rest > slow * unbalanced_before_) ++slow_;
   if (slow_ >= most_slow) model_->tissue.tangent().take_exact();
+  const bool rests = rest > rounding && (rest > still * unbalanced_before_ || !touches());
+  still_ = admissible && rests ? still_ + 1 : 0;
+  if (scheme_->now().proximal > 0.0 && still_ >= most_still)
+    return core::Refusal{not_held(*model_)};
   const bool overshoots = rest > std::max(unbalanced_before_, effort_.later);
   const bool may_shorten = effort_.most > 1 && effort_.measured;
   if ((!admissible || overshoots) && !(may_shorten && shorten(rest)))
@@ -163,6 +167,13 @@ bool Newton::shorten(double& rest)
   }
   if (possible) walls_ = model_->walls(next_.tissue.u);
   return possible;
+}
+
+/// True when some pair presses.
+bool Newton::touches() const
+{
+  return solution_->contact && solution_->contact->lambda.size() > 0 &&
+         solution_->contact->lambda.maxCoeff() > 0.0;
 }
 
 core::Refusal Newton::not_balanced() const

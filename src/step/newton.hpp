@@ -61,6 +61,7 @@ class Newton
   double largest_increment() const;
   int refused(const tissue::Folded& folded) const;
   bool shorten(double& rest);
+  bool touches() const;
 
   Model* model_;
   const Scheme* scheme_;
@@ -81,6 +82,7 @@ class Newton
   double unbalanced_before_ = std::numeric_limits<double>::infinity();
   double lost_before_ = std::numeric_limits<double>::infinity();  ///< Balance::lost [N]
   int inversions_ = 0;  ///< increments in a row that inverted elements
+  int still_ = 0;       ///< linearisations in a row that left the residual as it was
   int slow_ = 0;        ///< slow linearisations: residual not halved, or an element inverted
 };
 

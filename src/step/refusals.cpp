@@ -43,6 +43,19 @@ std::string inverted_at(const Scene& scene, int tet)
   return text.str();
 }
 
+std::string not_held(const Model& model)
+{
+  std::string names;
+  for (std::size_t b = 0; b < model.bodies.all.size(); ++b) {
+    if (model.bodies.all[b].held) continue;
+    const std::string name = model.bodies.name(model.scene.mesh, b);
+    names += (names.empty() ? "" : "; ") + (name.empty() ? "the tissue" : name);
+  }
+  return "neither supports nor contact hold " + names +
+         " (the loads push it off or along, or the surfaces are farther apart than "
+         "-contact_search)";
+}
+
 std::string place_of(const Scene& scene, const Solution& solution, int row)
 {
   const constraint::Row& one = solution.system.set().rows()[static_cast<std::size_t>(row)];

@@ -12,6 +12,9 @@ namespace trocar::step {
 /// Message about an inverted element of the tissue. `tet`: its index in file order.
 std::string inverted_at(const Scene& scene, int tet);
 
+/// Message about bodies that supports leave free in statics, and that no contact holds.
+std::string not_held(const Model& model);
+
 /// For a row that nothing can move: names its needle or cavity, and the place.
 std::string place_of(const Scene& scene, const Solution& solution, int row);
 

@@ -12,7 +12,8 @@
 namespace trocar::step {
 
 /// Energy account [J]: energies stored at the end of a step, and sums since the start.
-///   supplied = elastic + kinetic - stored_at_start + friction + cutting + damping + rest.
+///   supplied = elastic + kinetic - stored_at_start + friction + cutting + damping
+///            + contact + contact_friction + rest.
 /// The rest is what backward Euler dissipates, and the error of geometry that a step keeps frozen.
 struct EnergyAccount
 {
@@ -20,10 +21,13 @@ struct EnergyAccount
   double stored_at_start = 0.0;
   double supplied = 0.0;  ///< work of holders, loads, fluids and moving supports
   double friction = 0.0, cutting = 0.0, damping = 0.0;
+  double contact = 0.0;           ///< lost where gaps close
+  double contact_friction = 0.0;  ///< between bodies
 
   double rest() const
   {
-    return supplied - (elastic + kinetic - stored_at_start) - friction - cutting - damping;
+    return supplied - (elastic + kinetic - stored_at_start) - friction - cutting - damping -
+           contact - contact_friction;
   }
 
   /// Names every member and its unit, see core/visit.hpp.
@@ -37,6 +41,8 @@ struct EnergyAccount
     v("friction", "J", self.friction);
     v("cutting", "J", self.cutting);
     v("damping", "J", self.damping);
+    v("contact", "J", self.contact);
+    v("contact_friction", "J", self.contact_friction);
   }
 };
 

@@ -14,7 +14,8 @@ void ElementsOf<N>::assemble(const LinearisationPoint& at, const core::Rates& ra
   for (std::size_t e = 0; e < tets(); ++e) {
     const Material& m = material(e);
     const double scale_k = 1.0 + m.rayleigh_stiffness * rate.velocity;
-    const double scale_m = (rate.acceleration + m.rayleigh_mass) * rate.velocity * m.density;
+    const double scale_m =
+        ((rate.acceleration + m.rayleigh_mass) * rate.velocity + rate.mass) * m.density;
     const auto slots = pattern.slots(e);
     const fem::PointShape<N>* shape = &shapes_[points * e];
     const Mat3* R = &at.R[points * e];

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/dense.hpp"
 #include "core/words.hpp"
 #include "law/volume.hpp"
 #include "mesh/quadratic.hpp"
-#include "mesh/topology.hpp"
 
 namespace trocar::tissue {
 namespace {
@@ -116,43 +114,6 @@ fem::OwnedField traction_load(const mesh::SurfaceGroup& surface, const Vec3& val
     }
   }
   return load;
-}
-
-void require_supports(const fem::Dirichlet& fixed, const mesh::Mesh& mesh)
-{
-  int count = 0;
-  const std::vector<int> component = mesh::connected_components(mesh, count);
-  // A connected part is held when no rigid motion leaves all its fixed dofs at rest. Then Σ m mᵀ
-  // over its fixed dofs has rank 6; m holds the displacement of the dof in each of six rigid
-  // motions.
-  std::vector<Eigen::Matrix<double, 6, 6>> held(static_cast<std::size_t>(count),
-                                                Eigen::Matrix<double, 6, 6>::Zero());
-  std::vector<Vec3> first(static_cast<std::size_t>(count), Vec3::Constant(std::nan("")));
-  std::vector<double> size(static_cast<std::size_t>(count), 1e-300);
-  for (int node = 0; node < mesh.node_count(); ++node) {
-    const auto c = static_cast<std::size_t>(component[static_cast<std::size_t>(node)]);
-    const Vec3& x = mesh.x[static_cast<std::size_t>(node)];
-    if (first[c].hasNaN()) first[c] = x;
-    size[c] = std::max(size[c], (x - first[c]).norm());
-  }
-  for (int node = 0; node < mesh.node_count(); ++node)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!fixed.fixed(node, axis)) continue;
-      const auto c = static_cast<std::size_t>(component[static_cast<std::size_t>(node)]);
-      const Vec3 arm = (mesh.x[static_cast<std::size_t>(node)] - first[c]) / size[c];
-      Eigen::Matrix<double, 6, 1> motion;
-      motion << Vec3::Unit(axis), arm.cross(Vec3::Unit(axis));
-      held[c] += motion * motion.transpose();
-    }
-  for (std::size_t c = 0; c < held.size(); ++c) {
-    const core::VecX seen = core::symmetric_eigenvalues(core::MatX(held[c]));
-    if (seen[0] <= 1e-10 * seen[5])
-      throw core::option_error(
-          "option -fix: the supports leave a rigid motion free, so a static solution does not "
-          "exist" +
-          (count > 1 ? " (part " + std::to_string(c + 1) + " of " + std::to_string(count) + ")"
-                     : std::string()));
-  }
 }
 
 }  // namespace trocar::tissue

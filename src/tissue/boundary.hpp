@@ -62,8 +62,4 @@ double load_factor(const std::optional<core::Csv>& curve, double t);
 fem::OwnedField traction_load(const mesh::SurfaceGroup& surface, const Vec3& value,
                               const mesh::Mesh& mesh, const fem::Space& space);
 
-/// Throws Failure (64) when the supports leave a rigid motion of a connected part of the mesh free:
-/// a static problem would be singular.
-void require_supports(const fem::Dirichlet& fixed, const mesh::Mesh& mesh);
-
 }  // namespace trocar::tissue

@@ -204,7 +204,8 @@ OwnedField ElementsOf<N>::operate(const LinearisationPoint& at, const core::Rate
   for (std::size_t e = 0; e < tets(); ++e) {
     const Material& m = material(e);
     const double scale_k = 1.0 + m.rayleigh_stiffness * rate.velocity;
-    const double scale_m = (rate.acceleration + m.rayleigh_mass) * rate.velocity * m.density;
+    const double scale_m =
+        ((rate.acceleration + m.rayleigh_mass) * rate.velocity + rate.mass) * m.density;
     const Nodal w = nodal(d, e);
     Nodal force = scale_m * mass_factor(e) * w * mass_form(e);
     for (std::size_t point = points * e; point < points * (e + 1); ++point) {

@@ -61,7 +61,7 @@ core::Refusal Tissue::without_factor(const core::Refusal& refusal) const
 /// rates have changed, and drops a worn factor: a new factor is made in both cases.
 core::Outcome<core::Done> Tissue::go_on_with_factor(const TissueState& old, const TimeStep& step)
 {
-  if (!old.factor || !(old.factor->rates == step.rates())) return core::Done{};
+  if (!old.factor || !(old.factor->rates == step.operator_rates())) return core::Done{};
   current_ = &operator_for(old.factor->rates);
   if (!may_lag()) return core::Done{};
   current_->factor.set_age(old.age);

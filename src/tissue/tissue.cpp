@@ -73,7 +73,7 @@ Tissue::Operator& Tissue::operator_for(const core::Rates& rate)
 
 core::Outcome<core::Done> Tissue::use_operator(const LinearisationPoint& at, const TimeStep& step)
 {
-  const core::Rates rate = step.rates();
+  const core::Rates rate = step.operator_rates();
   const bool linear = settings_.all_linear();
   current_ = &operator_for(rate);
   solve::LaggedFactor& factor = current_->factor;
@@ -224,7 +224,7 @@ core::Outcome<solve::Linearisation> Tissue::linearise(const TissueState& old,
 
   const OwnedField prescribed = prescribed_increment(iterate, step);
   const bool moves = space_->comm().any(!prescribed.value.isZero(0.0));
-  if (moves) r.value -= operate_by_elements(at_, step.rates(), prescribed).value;
+  if (moves) r.value -= operate_by_elements(at_, step.operator_rates(), prescribed).value;
   if (moves && more.stiffness) r.value += more.stiffness(prescribed).value;
   fixed_.clear(r);
   at.iterate = iterate;

@@ -48,6 +48,7 @@ struct FactorOrigin
   {
     v("velocity_rate", "1/s", self.rates.velocity);
     v("acceleration_rate", "1/s", self.rates.acceleration);
+    v("mass_rate", "1/s^2", self.rates.mass);
     const auto by_point = [&](const char* name, const char* unit, auto& list) {
       fem::ByPoint values{list};
       v(name, unit, values);

@@ -2,6 +2,7 @@
 
 #include "core/failure.hpp"
 #include "support/body.hpp"
+#include "tissue/bodies.hpp"
 
 namespace trocar {
 namespace {

@@ -116,6 +116,49 @@ TEST(ContactPatch, PressureIsUniform)
         }
 }
 
+/// The same with pressure on the upper block. Contact holds it, alone with friction; without
+/// friction, where a block on a soft one may slide off, its upper end is guided sideways.
+step::Scene loaded(const Patch& patch)
+{
+  step::Scene scene = scene_of(patch);
+  tissue::PrescribedDisplacement& end = scene.tissue.boundary.displacements.back();
+  for (auto& [node, value] : end.field) value.z() = std::nan("");
+  end.value.z() = std::nan("");
+  if (patch.friction > 0.0) scene.tissue.boundary.displacements.pop_back();
+  scene.tissue.boundary.tractions.push_back(
+      {"b_z1", turn(patch.angle) * Vec3(0, 0, -pressure), std::nullopt});
+  scene.laws.tolerance = 1e-11;  // first it falls some hundred metres
+  scene.tissue.newton_tolerance = patch.quadratic ? 1e-7 : 1e-9;  // of the least loaded node
+  return scene;
+}
+
+TEST(ContactPatch, StressIsUniformInABodyThatContactHolds)
+{
+  for (const bool quadratic : {false, true})
+    for (const bool upper : {false, true})
+      for (const double angle : {0.0, std::acos(-1.0) / 6.0})
+        for (const double friction : {0.0, 0.5}) {
+          if (friction == 0.0 && angle > 0.0) continue;  // guides are along the axes
+          SCOPED_TRACE(testing::Message() << quadratic << upper << angle << friction);
+          const step::Scene scene = loaded({quadratic, upper, angle, friction});
+          const test::Run run = test::run(scene);
+          const base::Comm comm(MPI_COMM_WORLD);
+          step::Model model(scene, comm);
+          const core::VecX stress = model.tissue.stresses(run.states.back().tissue.u).stress;
+          const Mat3 R = turn(angle);
+          const Mat3 S = R * Vec3(0, 0, -pressure).asDiagonal() * R.transpose();
+          Eigen::Matrix<double, 6, 1> expected;
+          expected << S(0, 0), S(1, 1), S(2, 2), S(0, 1), S(1, 2), S(0, 2);
+          double worst = 0.0;
+          for (Eigen::Index t = 0; t < stress.size(); t += 6)
+            worst = std::max(worst, (stress.segment<6>(t) - expected).cwiseAbs().maxCoeff());
+          EXPECT_LT(worst, 1e-9 * pressure);
+          const double wider = 1.0 + poisson * pressure / young;  // than the area of the load
+          for (const contact::Touch& touch : run.states.back().contact.pairs[0].touches)
+            EXPECT_NEAR(wider * wider * touch.lambda[0] / touch.area, pressure, 1e-7 * pressure);
+        }
+}
+
 // A master with two layers within the search distance, both facing the slave: the nearer one is
 // met.
 TEST(ContactPatch, OfTwoLayersTheNearerIsMet)
