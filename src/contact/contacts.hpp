@@ -23,6 +23,7 @@ struct Contacts
   const std::vector<Pair>& pairs;
   const State& state;
   const fem::GlobalField& start;  ///< displacement at the start of the step
+  double start_t = 0.0;           ///< time there [s]
 };
 
 /// The rows of one slave corner: the normal one, and with friction two tangential ones.
@@ -77,6 +78,7 @@ struct PairReport
   /// Work of the normal forces in the step: what closing gaps takes from the bodies' motion, not
   /// positive but for normals that turn [J].
   double normal_work = 0.0;
+  double obstacle_work = 0.0;  ///< by an obstacle that moves, in the step [J]
 };
 
 /// The state after the step, and the results. Slips up to `tolerance` [m] count as sticking.

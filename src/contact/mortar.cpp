@@ -168,7 +168,7 @@ class Mortar
       const double area = 0.5 * (mine.x[1] - mine.x[0]).cross(mine.x[2] - mine.x[0]).norm();
       for (const TrianglePoint& at : triangle_points()) {
         const SlavePoint point = slave_point(face, mine, at.at, at.weight * area);
-        const Clearance there = clearance(obstacle, point.x);
+        const Clearance there = clearance(obstacle, point.x - obstacle.moved(now_.t));
         add(point, there.distance, -there.outward, [](double, std::map<int, double>&) {});
       }
     }
@@ -245,7 +245,8 @@ bool near(const Pair& pair, const Deformation& now)
     return bg::intersects(mine.grown(pair.search), bounds_of(*surface, now).grown(0.0));
   const Vec3 middle = 0.5 * (mine.low + mine.high);
   const double reach = 0.5 * (mine.high - mine.low).norm() + pair.search;
-  return clearance(std::get<Obstacle>(pair.master), middle).distance < reach;
+  const auto& obstacle = std::get<Obstacle>(pair.master);
+  return clearance(obstacle, middle - obstacle.moved(now.t)).distance < reach;
 }
 
 }  // namespace trocar::contact

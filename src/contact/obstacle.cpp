@@ -2,6 +2,14 @@
 
 namespace trocar::contact {
 
+Vec3 Obstacle::moved(double t) const
+{
+  Vec3 by = Vec3::Zero();
+  for (std::size_t axis = 0; path && axis < 3; ++axis)
+    by[static_cast<Eigen::Index>(axis)] = core::interpolate(*path, axis + 1, t);
+  return by;
+}
+
 Clearance clearance(const Obstacle& obstacle, const Vec3& x)
 {
   const Vec3 axis = obstacle.normal.normalized();

@@ -18,7 +18,8 @@ struct Touch
   double area = 0.0;                 ///< covered ∫φ [m²]
   constraint::Anchor slave, master;  ///< weights; no master nodes: an obstacle
   Vec3 apart = Vec3::Zero();  ///< (0, t1, t2): tangential distance from slave to master then [m]
-  Vec3 place = Vec3::Zero();  ///< mean place of the slave then, on an obstacle; else zero [m]
+  /// Mean place of the slave then, on an obstacle, as if that had not moved; else zero [m].
+  Vec3 place = Vec3::Zero();
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>
@@ -59,5 +60,8 @@ struct State
     v("pair", "", self.pairs);
   }
 };
+
+/// Whether the same corners touch.
+bool same_touching(const State& a, const State& b);
 
 }  // namespace trocar::contact

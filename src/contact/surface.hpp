@@ -9,11 +9,12 @@
 
 namespace trocar::contact {
 
-/// The deformed mesh. Borrows both.
+/// The deformed mesh at a time. Borrows mesh and displacement.
 struct Deformation
 {
   const mesh::Mesh& mesh;
   const fem::GlobalField& u;
+  double t = 0.0;  ///< [s]
 
   Vec3 at(int node) const { return mesh.x[static_cast<std::size_t>(node)] + u.node(node); }
 };

@@ -23,9 +23,10 @@ struct Ledger
   std::int64_t stress_evaluations = 0;  ///< stress fields computed for output
   std::int64_t steps = 0;               ///< accepted steps
   std::int64_t rejected_steps = 0;      ///< rejected steps, usually retried in halves
+  std::int64_t repeated_steps = 0;      ///< BDF2 steps made again with backward Euler, see step.cpp
 
   using Count = std::int64_t Ledger::*;
-  static constexpr std::array<std::pair<std::string_view, Count>, 13> members()
+  static constexpr std::array<std::pair<std::string_view, Count>, 14> members()
   {
     return {{{"assemblies", &Ledger::assemblies},
              {"factorisations", &Ledger::factorisations},
@@ -39,11 +40,12 @@ struct Ledger
              {"contact_queries", &Ledger::contact_queries},
              {"stress_evaluations", &Ledger::stress_evaluations},
              {"steps", &Ledger::steps},
-             {"rejected_steps", &Ledger::rejected_steps}}};
+             {"rejected_steps", &Ledger::rejected_steps},
+             {"repeated_steps", &Ledger::repeated_steps}}};
   }
-  std::array<std::pair<std::string_view, std::int64_t>, 13> entries() const
+  std::array<std::pair<std::string_view, std::int64_t>, 14> entries() const
   {
-    std::array<std::pair<std::string_view, std::int64_t>, 13> all;
+    std::array<std::pair<std::string_view, std::int64_t>, 14> all;
     for (std::size_t i = 0; i < all.size(); ++i)
       all[i] = {members()[i].first, this->*members()[i].second};
     return all;

@@ -6,6 +6,7 @@
 
 #include "core/words.hpp"
 #include "driver/option_kinds.hpp"
+#include "driver/option_source.hpp"
 
 namespace trocar::driver {
 
@@ -32,13 +33,25 @@ void add_contact_options(std::vector<OptionSpec>& t)
   t.push_back(vector("obstacle_<obstacle>_normal", "0,0,1", "1",
                      "out of the half space; along the cylinder's axis"));
   t.push_back(not_negative("obstacle_<obstacle>_radius", "0", "m", "of ball and cylinder"));
+  t.push_back(file("obstacle_<obstacle>_curve",
+                   "CSV (columns time,x,y,z): its displacement over time [m]"));
 }
 
 namespace {
 
 using core::Options;
 
-contact::Obstacle read_obstacle(Options& options, const std::string& name)
+/// The displacement of an obstacle over time; nothing without a file.
+std::optional<core::Csv> read_path(const std::string& file, const base::Comm& comm)
+{
+  if (file.empty()) return std::nullopt;
+  core::Csv path = read_csv(file, comm);
+  core::require_time_column(path);
+  if (path.columns.size() != 4) throw core::data_error(file + ": columns must be time,x,y,z");
+  return path;
+}
+
+contact::Obstacle read_obstacle(Options& options, const std::string& name, const base::Comm& comm)
 {
   using Shape = contact::Obstacle::Shape;
   const std::map<std::string, Shape> shapes{
@@ -47,9 +60,12 @@ contact::Obstacle read_obstacle(Options& options, const std::string& name)
   const auto bad = [&](const std::string& option, const std::string& why) {
     return core::option_error("option -obstacle_" + name + "_" + option + ": " + why);
   };
-  contact::Obstacle obstacle{
-      name, shapes.at(options.text(at + "shape", name)), options.vector(at + "origin", name),
-      options.vector(at + "normal", name), options.real(at + "radius", name)};
+  contact::Obstacle obstacle{name,
+                             shapes.at(options.text(at + "shape", name)),
+                             options.vector(at + "origin", name),
+                             options.vector(at + "normal", name),
+                             options.real(at + "radius", name),
+                             read_path(options.text(at + "curve", name), comm)};
   const bool plane = obstacle.shape == Shape::plane;
   if (plane && options.given_for(at + "radius", name)) throw bad("radius", "a plane has none");
   if (!plane && !(obstacle.radius > 0.0)) throw bad("radius", "must be positive");
@@ -73,12 +89,12 @@ std::vector<std::string> words_of(const std::string& entry)
 
 }  // namespace
 
-contact::Settings read_contact(Options& options, const mesh::Mesh& mesh)
+contact::Settings read_contact(Options& options, const mesh::Mesh& mesh, const base::Comm& comm)
 {
   contact::Settings settings;
   std::set<std::string> used, pairs;
   for (const std::string& name : options.new_names("obstacles"))
-    settings.obstacles.push_back(read_obstacle(options, name));
+    settings.obstacles.push_back(read_obstacle(options, name, comm));
   for (const std::string& entry : options.new_names("contact_pairs")) {
     const std::vector<std::string> words = words_of(entry);
     contact::PairSettings pair{words[0], words[1], words[2]};

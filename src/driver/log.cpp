@@ -177,8 +177,8 @@ void Log::print_energy() const
   std::printf(
       "\nenergy [J]: supplied %.4g = elastic %.4g + kinetic %.4g - at the start %.4g "
       "+ friction %.4g + cutting %.4g + damping %.4g",
-      energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start,
-      energy_.friction, energy_.cutting, energy_.damping);
+      energy_.supplied, energy_.elastic, energy_.kinetic, energy_.stored_at_start, energy_.friction,
+      energy_.cutting, energy_.damping);
   if (!scenario_->contact.pairs.empty())
     std::printf(" + contact %.4g + its friction %.4g", energy_.contact, energy_.contact_friction);
   std::printf(" + rest %.2g", energy_.rest());

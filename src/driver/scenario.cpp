@@ -218,7 +218,7 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   if (options.flag("insertion_radius_correction")) add_radius_correction(scenario);
   scenario.insertion.line.dilatation = dilatation;
   read_cavities(options, scenario, comm);
-  scenario.contact = read_contact(options, scenario.mesh);
+  scenario.contact = read_contact(options, scenario.mesh, comm);
   options.refuse_unread();
   check_scenario(scenario);
   return scenario;

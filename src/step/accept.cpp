@@ -41,6 +41,7 @@ EnergyAccount account(const Model& model, const State& old, const Scheme& scheme
     energy.cutting -= done.coupling.cutting_work;
   }
   for (const contact::PairReport& pair : newton.report().contact) {
+    energy.supplied += pair.obstacle_work;
     energy.contact -= pair.normal_work;
     energy.contact_friction -= pair.friction_work;
   }
@@ -72,9 +73,9 @@ void accept_contact(const Model& model, const State& old, Newton& newton)
   if (!newton.solution().contact) return;
   const fem::GlobalField u = model.space.gather(next.tissue.u);
   const fem::GlobalField before = model.space.gather(old.tissue.u);
-  next.contact =
-      contact::accept({model.contact, old.contact, before}, *newton.solution().contact,
-                      {model.scene.mesh, u}, model.scene.insertion.stick_tolerance, report.contact);
+  next.contact = contact::accept({model.contact, old.contact, before, old.t},
+                                 *newton.solution().contact, {model.scene.mesh, u, next.t},
+                                 model.scene.insertion.stick_tolerance, report.contact);
 }
 
 void accept_needles(const Model& model, Newton& newton)

@@ -90,7 +90,7 @@ void Newton::collect_rows(Solution& solution)
                                             {next_.tissue.u, walls_, now}, rows.set);
   if (!model_->contact.empty()) {
     const fem::GlobalField u = model_->space.gather(next_.tissue.u);
-    solution.of_contact = contact::add_rows(contacts(), {model_->scene.mesh, u}, rows.set);
+    solution.of_contact = contact::add_rows(contacts(), {model_->scene.mesh, u, now.t}, rows.set);
   }
   solution.system = constraint::System(std::move(rows.set), std::move(bodies));
 }
@@ -99,7 +99,7 @@ void Newton::collect_rows(Solution& solution)
 void Newton::end_contact(Solution& solution) const
 {
   const fem::GlobalField u = model_->space.gather(next_.tissue.u);
-  const contact::Deformation now{model_->scene.mesh, u};
+  const contact::Deformation now{model_->scene.mesh, u, scheme_->now().t};
   const std::vector<contact::Pair>& pairs = model_->contact;
   const bool any = std::any_of(pairs.begin(), pairs.end(),
                                [&](const contact::Pair& pair) { return contact::near(pair, now); });

@@ -76,7 +76,7 @@ Differenced velocity_of(const Model& model, const State& state, double h)
 // The lag is 0 and the curvature -h (h + h_before)/6. Backward Euler takes the first step, and any
 // step with r outside `shortest` to `longest`. Where the three velocities have no sound
 // acceleration, the last two give one of first order.
-Scheme::Scheme(const Model& model, const State& old, const core::TimeStep& asked)
+Scheme::Scheme(const Model& model, const State& old, const core::TimeStep& asked, int order)
     : now_(asked), past_(&old), old_velocity_(velocity_of(model, old, asked.h))
 {
   if (now_.is_static) now_.proximal = model.proximal;
@@ -85,7 +85,7 @@ Scheme::Scheme(const Model& model, const State& old, const core::TimeStep& asked
   const double h = now_.h, r = old.h > 0.0 ? h / old.h : 0.0;
   velocity_ = differenced_once(h);
   now_.interval = h - velocity_.lag + old_velocity_.lag;
-  if (old.before && r <= longest && r >= shortest) extrapolate(old, r);
+  if (order == 2 && old.before && r <= longest && r >= shortest) extrapolate(old, r);
 }
 
 void Scheme::extrapolate(const State& old, double r)

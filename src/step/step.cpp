@@ -11,9 +11,8 @@ namespace trocar::step {
 // A step as in both papers. Every body moves freely (part 2). The rows that couple the bodies (3)
 // are solved in one small dense problem (4). Its multipliers correct the bodies (5). Parts 2 to 5
 // are repeated until all forces are balanced.
-Outcome<Accepted> advance(Model& model, const State& old, const core::TimeStep& step)
+Outcome<Accepted> advance_by(Model& model, const State& old, const Scheme& scheme)
 {
-  const Scheme scheme(model, old, step);
   auto next = predict(model, old, scheme);  // part 1: events, fixed from here on
   if (!next) return next.refusal();
   Newton newton(model, scheme, std::move(*next));
@@ -23,6 +22,23 @@ Outcome<Accepted> advance(Model& model, const State& old, const core::TimeStep& 
     if (const auto led = newton.lead_on(); !led) return led.refusal();
   }
   return newton.not_balanced();
+}
+
+// Where bodies meet or part, velocities jump, and a difference over three states overshoots: one
+// impact becomes several. With BDF2 such a step is repeated with backward Euler, and BDF2 begins
+// anew from its end.
+Outcome<Accepted> advance(Model& model, const State& old, const core::TimeStep& step)
+{
+  const Scheme scheme(model, old, step);
+  Outcome<Accepted> end = advance_by(model, old, scheme);
+  if (!end || !model.scene.time.second_order || step.is_static) return end;
+  if (contact::same_touching(old.contact, end->state.contact)) return end;
+  if (scheme.second_order()) {
+    ++model.ledger.repeated_steps;
+    end = advance_by(model, old, Scheme(model, old, step, 1));
+  }
+  if (end) end->state.before.reset();
+  return end;
 }
 
 Outcome<Accepted> initial_state(Model& model)

@@ -169,6 +169,8 @@ refuses("friction of an unknown pair", 64, ["-contact_reft_friction"], {**touchi
 refuses("two pairs of one name", 64, ["rest"], {**touching, "-contact_pairs": "rest:z1:floor,rest:z0:floor"})
 refuses("slave of two pairs", 65, ["again", "z1"], {**touching, "-contact_pairs": "rest:z1:floor,again:z1:floor"})
 refuses("slave that is held", 65, ["rest", "z0"], {**touching, "-contact_pairs": "rest:z0:floor"}, ranks=(1, 3))
+refuses("curve of an obstacle without its columns", 65, ["wall.csv", "time,x,y,z"],
+        {**touching, "-obstacle_floor_curve": written("wall.csv", "time,x\n0,0\n")}, ranks=(1, 3))
 refuses("obstacle named like a surface", 64, ["z0", "surface"], {"-obstacles": "z0", "-contact_pairs": "rest:z1:z0"})
 refuses("friction of no contact", 64, ["-contact_friction"], {"-contact_friction": "0.3"})
 refuses("few linearisations and contact", 64, ["-time_newton_max", "-contact_pairs"], {**touching, "-time_newton_max": "2"})

@@ -156,6 +156,7 @@ work = ledger(completed(given))
 check(work["constraint_solves"] == 0 and work["columns_built"] == 0, "a given pressure is a load: no row")
 
 keys = {"assemblies", "factorisations", "solves", "half_sweeps", "columns_built", "columns_reused",
-        "constraint_solves", "contact_queries", "surface_passes", "pressure_updates", "stress_evaluations", "steps", "rejected_steps"}
+        "constraint_solves", "contact_queries", "surface_passes", "pressure_updates", "stress_evaluations", "steps",
+        "rejected_steps", "repeated_steps"}
 check(set(work) == keys, "the ledger holds every count of the contract")
 finish()

@@ -80,5 +80,28 @@ TEST(Slope, ABlockBelowTheLimitStays)
   }
 }
 
+// A floor that moves on drags the block with Coulomb's force until the block moves with it.
+TEST(Slope, AMovingFloorDragsTheBlock)
+{
+  step::Scene scene = block_on_slope(0.0, false, 2);
+  scene.time.start_in_equilibrium = true;
+  constexpr double belt = 0.6;  // its speed [m/s], reached by the block after 0.12 s
+  scene.contact.obstacles[0].path =
+      core::Csv{"belt", {"time", "x", "y", "z"}, {{0, 0, 0, 0}, {1, 0, belt, 0}}};
+  scene.time.step = 0.002;
+  scene.time.end = 0.4;
+  scene.energy = true;
+  const test::Run run = test::run(scene);
+  const Vec3 early = speed(scene, run.states[40]), late = speed(scene, run.states.back());
+  EXPECT_NEAR(early.y(), friction * g * 0.08, 0.02 * belt);
+  EXPECT_NEAR(late.y(), belt, 0.01 * belt);
+  EXPECT_EQ(run.reports.back().contact[0].slipping, 0);
+  // The belt pays as much for heat as for the block's motion.
+  const step::EnergyAccount& e = run.states.back().energy;
+  const double mass = 1000.0 * 0.04 * 0.04 * 0.02, paid = mass * belt * belt;
+  EXPECT_NEAR(e.supplied, paid, 0.03 * paid);
+  EXPECT_NEAR(e.contact_friction, 0.5 * paid, 0.03 * paid);
+}
+
 }  // namespace
 }  // namespace trocar
