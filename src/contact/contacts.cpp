@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
+#include "contact/slip.hpp"
 #include "core/failure.hpp"
 #include "core/words.hpp"
 
@@ -91,52 +91,6 @@ core::Mat3 frame_at(const Surface& surface, const Meeting& meeting, const Deform
   frame.col(1) = (edge - n.dot(edge) * n).normalized();
   frame.col(2) = n.cross(frame.col(1));
   return frame;
-}
-
-Vec3 mean(const constraint::Anchor& anchor, const Deformation& now)
-{
-  return anchor.mean([&](int node) { return now.at(node); });
-}
-
-/// Displacement of a pair's obstacle [m]; zero for a surface.
-Vec3 obstacle_moved(const Contacts& contacts, int pair, double t)
-{
-  const Master& master = contacts.pairs[static_cast<std::size_t>(pair)].master;
-  const auto* obstacle = std::get_if<Obstacle>(&master);
-  return obstacle ? obstacle->moved(t) : Vec3::Zero();
-}
-
-/// How far the master moved from the slave in the step [m].
-Vec3 moved_apart(const Group& group, const Contacts& contacts, const Deformation& now)
-{
-  const Meeting& at = group.meeting;
-  const Deformation before{now.mesh, contacts.start, contacts.start_t};
-  const Vec3 carried =
-      obstacle_moved(contacts, group.pair, now.t) - obstacle_moved(contacts, group.pair, before.t);
-  return carried + (mean(at.master, now) - mean(at.master, before)) -
-         (mean(at.slave, now) - mean(at.slave, before));
-}
-
-/// From the slave's to the master's mean place; on an obstacle, from the slave to where the
-/// obstacle has carried the place of the anchor [m].
-Vec3 distance(const Contacts& contacts, int pair, const Touch& touch, const Deformation& now)
-{
-  return mean(touch.master, now) + obstacle_moved(contacts, pair, now.t) -
-         (mean(touch.slave, now) - touch.place);
-}
-
-/// Slip of a group since it touched last, in the frame's tangents (0, t1, t2) [m].
-Vec3 slip_of(const Group& group, const Contacts& contacts, const Deformation& now)
-{
-  Vec3 slip = Vec3::Zero();
-  if (group.touch) {
-    const Vec3 d = distance(contacts, group.pair, *group.touch, now);
-    for (int k = 1; k < 3; ++k) slip[k] = group.frame.col(k).dot(d) - group.touch->apart[k];
-    return slip;
-  }
-  const Vec3 moved = moved_apart(group, contacts, now);
-  for (int k = 1; k < 3; ++k) slip[k] = group.frame.col(k).dot(moved);
-  return slip;
 }
 
 /// A row between two mean places: master minus slave, along a direction.
@@ -235,65 +189,6 @@ Ending ending(const Contacts& contacts, const Deformation& now, const Rows& solv
   }
   end.system = constraint::System(std::move(set), {});
   return end;
-}
-
-bool same_touching(const State& a, const State& b)
-{
-  const auto same = [](const Touch& one, const Touch& other) { return one.node == other.node; };
-  const std::size_t pairs = std::max(a.pairs.size(), b.pairs.size());
-  for (std::size_t p = 0; p < pairs; ++p) {
-    const std::vector<Touch> none;
-    const std::vector<Touch>& mine = p < a.pairs.size() ? a.pairs[p].touches : none;
-    const std::vector<Touch>& others = p < b.pairs.size() ? b.pairs[p].touches : none;
-    if (!std::equal(mine.begin(), mine.end(), others.begin(), others.end(), same)) return false;
-  }
-  return true;
-}
-
-State accept(const Contacts& contacts, const Ending& ending, const Deformation& now,
-             double tolerance, std::vector<PairReport>& reports)
-{
-  State state;
-  state.pairs.resize(contacts.pairs.size());
-  reports.assign(contacts.pairs.size(), {});
-  std::set<int> reached;  // pairs
-  for (const Group& group : ending.rows.groups) {
-    PairReport& report = reports[static_cast<std::size_t>(group.pair)];
-    const Meeting& at = group.meeting;
-    const bool first = reached.insert(group.pair).second;
-    report.weighted_gap = first ? at.gap : std::min(report.weighted_gap, at.gap);
-    Touch touch;
-    touch.node = at.node;
-    touch.area = at.area;
-    for (int k = 0; k < group.rows; ++k) touch.lambda[k] = ending.lambda[group.first + k];
-    if (!(touch.lambda[0] > 0.0)) continue;
-    report.force += group.frame * touch.lambda;
-    report.area += at.area;
-    report.obstacle_work -= (group.frame * touch.lambda)
-                                .dot(obstacle_moved(contacts, group.pair, now.t) -
-                                     obstacle_moved(contacts, group.pair, contacts.start_t));
-    report.normal_work +=
-        touch.lambda[0] * group.frame.col(0).dot(moved_apart(group, contacts, now));
-    const Vec3 slip = group.rows > 1 ? slip_of(group, contacts, now) : Vec3::Zero();
-    touch.stuck = group.rows > 1 && slip.norm() <= tolerance;
-    if (!touch.stuck) report.friction_work += touch.lambda.dot(slip);
-    ++(touch.stuck ? report.sticking : report.slipping);
-    if (touch.stuck && group.touch) {
-      touch.slave = group.touch->slave;
-      touch.master = group.touch->master;
-      touch.apart = group.touch->apart;
-      touch.place = group.touch->place;
-    } else if (group.rows > 1) {
-      touch.slave = at.slave;
-      touch.master = at.master;
-      if (at.master.node.empty())
-        touch.place = mean(at.slave, now) - obstacle_moved(contacts, group.pair, now.t);
-      const Vec3 d = distance(contacts, group.pair, touch, now);
-      for (int k = 1; k < 3; ++k) touch.apart[k] = group.frame.col(k).dot(d);
-    }
-    state.pairs[static_cast<std::size_t>(group.pair)].touches.push_back(std::move(touch));
-  }
-  return state;
 }
 
 }  // namespace trocar::contact

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -67,14 +68,29 @@ struct Ending
 Ending ending(const Contacts& contacts, const Deformation& now, const Rows& solved,
               const core::VecX& lambda, const core::VecX& mobility);
 
+/// What a slave corner in reach of the master does. The force acts on the master.
+struct CornerReport
+{
+  enum State : std::uint8_t { apart = 0, slips = 1, sticks = 2 };
+  int node;     ///< file node
+  double gap;   ///< weighted gap [m]
+  double area;  ///< covered ∫φ [m²]
+  State state = apart;
+  double pressure = 0.0;      ///< normal force over area [Pa]
+  Vec3 force = Vec3::Zero();  ///< [N]
+};
+
 /// Results of one pair. Forces act on the master.
 struct PairReport
 {
-  Vec3 force = Vec3::Zero();       ///< [N]
-  double area = 0.0;               ///< of the touching corners [m²]
-  double weighted_gap = 0.0;       ///< least of the corners in reach [m]; 0: none is
-  int sticking = 0, slipping = 0;  ///< touching corners; without friction all slip
-  double friction_work = 0.0;      ///< Σ λ·slip of the step, not positive [J]
+  Vec3 force = Vec3::Zero();  ///< [N]
+  double area = 0.0;          ///< of the touching corners [m²]
+  double weighted_gap = 0.0;  ///< least of the corners in reach [m]; 0: none is
+  /// Farthest that a point of the slave lies in the master, in spite of closed weighted gaps [m].
+  double largest_penetration = 0.0;
+  std::vector<CornerReport> corners{};  ///< in reach, ascending nodes
+  int sticking = 0, slipping = 0;       ///< touching corners; without friction all slip
+  double friction_work = 0.0;           ///< Σ λ·slip of the step, not positive [J]
   /// Work of the normal forces in the step: what closing gaps takes from the bodies' motion, not
   /// positive but for normals that turn [J].
   double normal_work = 0.0;

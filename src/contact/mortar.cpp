@@ -15,10 +15,12 @@ struct Sums
 {
   std::map<int, double> slave, master;
   double gap = 0.0, area = 0.0;
+  double least = std::numeric_limits<double>::infinity();  ///< distance of a point [m]
   Vec3 normal = Vec3::Zero();
 
   void add(const Sums& other)
   {
+    least = std::min(least, other.least);
     for (const auto& [node, weight] : other.slave) slave[node] += weight;
     for (const auto& [node, weight] : other.master) master[node] += weight;
     gap += other.gap;
@@ -98,6 +100,7 @@ class Mortar
       Sums& sums = sums_[corner(point.face, k)];
       const double w = point.weight * linear.value[static_cast<Eigen::Index>(k)];
       sums.gap += w * gap;
+      sums.least = std::min(sums.least, gap);
       sums.area += w;
       sums.normal += w * normal;
       add_weights(slave_, point.face, point.at, w, sums.slave);
@@ -208,7 +211,7 @@ class Mortar
       if (!(sums.area > 0.0)) continue;
       const double gap = sums.gap / sums.area;
       if (obstacle && gap > pair_.search) continue;
-      Meeting meeting{slave_.corners()[j], {}, {}, gap, corner_normal_[j], sums.area};
+      Meeting meeting{slave_.corners()[j], {}, {}, gap, corner_normal_[j], sums.area, sums.least};
       if (obstacle) meeting.normal = sums.normal.normalized();
       meeting.slave = mean(sums.slave, sums.area);
       if (!obstacle) meeting.master = mean(sums.master, sums.area);

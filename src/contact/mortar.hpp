@@ -33,6 +33,7 @@ struct Meeting
   double gap;                        ///< mean distance along the slave's normal [m]
   Vec3 normal;                       ///< out of the slave; into an obstacle
   double area;                       ///< covered ∫φ_j [m²]
+  double least_gap;                  ///< least distance of a point around the corner [m]
 };
 
 /// The corners of a pair that have something within the search distance, in ascending order. Every

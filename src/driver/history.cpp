@@ -90,6 +90,8 @@ void add_contact(const std::string& name, std::size_t p, List& list)
   list.number(at + "area", "m^2", [=](const Moment& now) { return report(now).area; });
   list.number(at + "weighted_gap", "m",
               [=](const Moment& now) { return report(now).weighted_gap; });
+  list.number(at + "largest_penetration", "m",
+              [=](const Moment& now) { return report(now).largest_penetration; });
   list.number(at + "sticking", "1", [=](const Moment& now) { return report(now).sticking; });
   list.number(at + "slipping", "1", [=](const Moment& now) { return report(now).slipping; });
 }

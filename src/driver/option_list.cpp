@@ -251,7 +251,7 @@ void add_output(std::vector<OptionSpec>& t)
       [] {
         OptionSpec spec =
             list("output_fields",
-                 "nodal: displacement, velocity, nodal_stress; by tet: stress, von_mises, "
+                 "nodal: displacement, velocity, contact, nodal_stress; by tet: stress, von_mises, "
                  "principal_stress, strain_energy; \"\" = none");
         spec.fallback = "displacement";
         return spec;

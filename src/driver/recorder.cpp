@@ -50,6 +50,33 @@ std::vector<io::Field> coupling_fields(const step::Model& model, const step::Sta
   return {id, position, lambda, stuck, tributary};
 }
 
+/// Gap, pressure, traction and state of every pair at the nodes of the mesh; not zero at slave
+/// corners in reach only.
+std::vector<io::Field> contact_fields(const step::Model& model, const step::StepReport& report)
+{
+  std::vector<io::Field> fields;
+  const auto nodes = static_cast<std::size_t>(model.scene.mesh.node_count());
+  for (std::size_t p = 0; p < report.contact.size(); ++p) {
+    const std::string at = "/contact/" + model.scene.contact.pairs[p].name + "/";
+    io::Field gap{at + "gap", 0, "m", std::vector<double>(nodes), true};
+    io::Field pressure{at + "pressure", 0, "Pa", std::vector<double>(nodes), true};
+    io::Field traction{at + "traction", 3, "Pa", std::vector<double>(3 * nodes), true};
+    io::Field state{at + "state", 0, "1", std::vector<double>(nodes, -1.0), true};
+    for (const contact::CornerReport& corner : report.contact[p].corners) {
+      const auto n = static_cast<std::size_t>(corner.node);
+      gap.values[n] = corner.gap;
+      pressure.values[n] = corner.pressure;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        traction.values[3 * n + axis] =
+            -corner.force[static_cast<Eigen::Index>(axis)] / corner.area;
+      state.values[n] = corner.state;
+    }
+    for (io::Field* field : {&gap, &pressure, &traction, &state})
+      fields.push_back(std::move(*field));
+  }
+  return fields;
+}
+
 /// Axis and radius of every needle, so that ParaView can draw the needles.
 std::vector<io::Curve> needle_curves(const step::Model& model, const step::State& state)
 {
@@ -115,7 +142,7 @@ void Recorder::record(const step::State& state, const step::StepReport& report, 
   const double build_seconds = space.comm().max(report.compliance.seconds);
   std::vector<io::Field> fields;
   // Without output fields nothing is gathered and no field file is made.
-  if (with_fields && (output.displacement || output.velocity || output.stress.any())) {
+  if (with_fields && output.fields()) {
     const fem::GlobalField u = space.gather(state.tissue.u);
     if (output.displacement) fields.push_back(nodal_field("/displacement", "m", u));
     if (output.velocity)
@@ -123,6 +150,8 @@ void Recorder::record(const step::State& state, const step::StepReport& report, 
     for (auto& field : post::stress_fields(*model_, state, output.stress))
       fields.push_back(std::move(field));
     for (auto& field : coupling_fields(*model_, state, u)) fields.push_back(std::move(field));
+    if (output.contact)
+      for (auto& field : contact_fields(*model_, report)) fields.push_back(std::move(field));
   }
   base::on_root(space.comm(), [&] {
     const Moment now{*model_, state, report, build_seconds, seconds};

@@ -160,6 +160,7 @@ OutputSettings read_output(Options& options)
   output.displacement = false;
   const std::map<std::string, bool*> fields{{"displacement", &output.displacement},
                                             {"velocity", &output.velocity},
+                                            {"contact", &output.contact},
                                             {"stress", &output.stress.stress},
                                             {"von_mises", &output.stress.von_mises},
                                             {"principal_stress", &output.stress.principal_stress},

@@ -18,12 +18,15 @@ struct OutputSettings
   int every = 1;
   bool displacement = true;
   bool velocity = false;
+  bool contact = false;  ///< gap, pressure, traction and state at the corners of slave surfaces
   post::StressOutput stress;
   bool error_estimate = false;
   double error_target = 0.0;  ///< target of the error relative to the energy norm; 0: none
   std::string size_field;     ///< file for the sizes of the next mesh; empty: none
   bool locking_gauge = false;
   bool quiet = false;
+
+  bool fields() const { return displacement || velocity || contact || stress.any(); }
 };
 
 /// When checkpoints are written, and how long a run may take.

@@ -32,6 +32,8 @@ void refuse_idle(const Scenario& scenario)
          "out");
   refuse(scenario.output.locking_gauge && scenario.cavities.cavities.empty(),
          "locking_gauge: there is no cavity (-cavities)");
+  refuse(scenario.output.contact && scenario.contact.pairs.empty(),
+         "output_fields: there is no contact (-contact_pairs)");
   const CheckpointSettings& checkpoint = scenario.checkpoint;
   const bool no_steps = scenario.pv || scenario.time.end == 0.0;
   refuse(no_steps && checkpoint.every > 0, "checkpoint_every: there are no steps in time");

@@ -172,6 +172,7 @@ refuses("slave that is held", 65, ["rest", "z0"], {**touching, "-contact_pairs":
 refuses("curve of an obstacle without its columns", 65, ["wall.csv", "time,x,y,z"],
         {**touching, "-obstacle_floor_curve": written("wall.csv", "time,x\n0,0\n")}, ranks=(1, 3))
 refuses("obstacle named like a surface", 64, ["z0", "surface"], {"-obstacles": "z0", "-contact_pairs": "rest:z1:z0"})
+refuses("fields of no contact", 64, ["-output_fields", "contact"], {"-output_fields": "contact"})
 refuses("friction of no contact", 64, ["-contact_friction"], {"-contact_friction": "0.3"})
 refuses("few linearisations and contact", 64, ["-time_newton_max", "-contact_pairs"], {**touching, "-time_newton_max": "2"})
 refuses("stale contact", 64, ["stale", "-contact_pairs"], {**touching, "-compliance_reuse": "stale", "-tissue_model": "corotational"})

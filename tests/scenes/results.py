@@ -122,6 +122,24 @@ with open(os.path.join(folder, "run.xdmf")) as stream:
 check(text.count('Center="Cell"') == 4 * (1 + 4) and 'Name="nodal_stress" AttributeType="Matrix" Center="Node"' in text,
       "ParaView's file names them by tet and by node")
 
+# Contact on request: at the slave's corners, what the histories count.
+ball = options("ball_on_block.opts")
+ball.update({"-mesh": geometry("ball_on_block"), "-time_end": "0.6", "-output_every": "4",
+             "-output_fields": "contact"})
+folder = completed(ball, 2)
+with h5py.File(os.path.join(folder, "run.h5")) as r, \
+        h5py.File(os.path.join(folder, "fields", "step_000012.h5")) as step:
+    now, history = step["contact/contact"], r["history/contact/contact"]
+    state, pressure, gap = now["state"][:], now["pressure"][:], now["gap"][:]
+    check((state == 2).sum() == history["sticking"][-1] > 3 and (state == 1).sum() == history["slipping"][-1],
+          "corners stick and slip as the histories say")
+    check(np.array_equal(pressure > 0, state > 0) and abs(gap[state > 0]).max() < 1e-8 and (gap[state == 0] > 0).all(),
+          "pressure where they touch, a gap where they do not")
+    pull = now["traction"][:]
+    check(np.allclose(np.linalg.norm(pull, axis=1)[state == 0], 0) and pull[state > 0, 2].min() > 0,
+          "tractions push the ball up")
+    check(0 < history["largest_penetration"][-1] < 2e-4, "points between corners go in by less than 0.2 mm")
+
 # The error estimate: falls with the edges, parts add to one, nothing without it.
 estimates = []
 for n in ("5", "9"):
