@@ -38,6 +38,13 @@ bool cholesky_in_place(MatX& A)
   return Eigen::LLT<Eigen::Ref<MatX>>(A).info() == Eigen::Success;
 }
 
+Square::Square(const MatX& A) : lu_(A) {}
+
+VecX Square::solve(const VecX& b) const
+{
+  return lu_.solve(b);
+}
+
 VecX solve_square(const MatX& A, const VecX& b)
 {
   return A.partialPivLu().solve(b);

@@ -27,6 +27,18 @@ class Cholesky
   bool regular_ = false;
 };
 
+/// A = P L U of a regular square matrix, for several right-hand sides.
+class Square
+{
+ public:
+  Square() = default;
+  explicit Square(const MatX& A);
+  VecX solve(const VecX& b) const;
+
+ private:
+  Eigen::PartialPivLU<MatX> lu_;
+};
+
 /// Overwrites the lower half of A with the L of A = L Lᵀ. Returns false when a pivot is not
 /// positive.
 bool cholesky_in_place(MatX& A);

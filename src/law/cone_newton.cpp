@@ -159,10 +159,14 @@ Multipliers cone_newton(const Problem& problem, const Settings& settings, int mo
   Multipliers result;
   const VecX give = mobility(problem);
   VecX lambda = problem.start.size() == problem.rows() ? problem.start : VecX::Zero(problem.rows());
+  constexpr int most_idle = 8;  // steps without a smaller residual: it goes in a circle
   double best = std::numeric_limits<double>::infinity();
+  int idle = 0;
   for (int k = 0; k <= most; ++k) {
     const double residual = kkt_residual(problem, lambda);
     if (!std::isfinite(residual)) break;
+    idle = residual < best ? 0 : idle + 1;
+    if (idle > most_idle) break;
     if (residual < best) {
       best = residual;
       result.lambda = lambda;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/words.hpp"
+#include "law/cone_interior.hpp"
 #include "law/cone_newton.hpp"
 #include "law/fixed_sets.hpp"
 #include "law/immovable.hpp"
@@ -114,30 +115,50 @@ Multipliers settle_bounds(const Problem& problem, const Settings& settings)
 
 }  // namespace
 
+namespace {
+
+/// Newton's method on all rows from the start, then from what an interior point comes to. Bodies
+/// that touch slip, stick and open at many corners: bounds that are settled in turn come to rest
+/// slowly or not at all there.
+Multipliers solve_touching(const Problem& problem, const Settings& settings)
+{
+  constexpr int most = 30;
+  Multipliers result = cone_newton(problem, settings, most);
+  if (result.converged || !all_for_cone_interior(problem)) return result;
+  const Multipliers inner = cone_interior(problem, settings);
+  Problem again = problem;
+  if (inner.lambda.size() == problem.rows()) again.start = inner.lambda;
+  const int before = result.iterations + inner.iterations;
+  result = cone_newton(again, settings, most);
+  result.iterations += before;
+  return result;
+}
+
+}  // namespace
+
 Multipliers solve(const Problem& problem, const Settings& settings)
 {
-  const auto is_cone = [](const Block& block) { return block.law.set == Law::Set::cone; };
   const auto follows = [&](const Block& block) {
-    return block.law.set == Law::Set::follower || is_cone(block);
+    return block.law.set == Law::Set::follower || block.law.set == Law::Set::cone;
   };
-  // Newton's method where many groups slip, stick or open: there the bounds settle slowly, or not
-  // at all, and an interior point ends above the rounding errors of bodies that fall far.
-  constexpr int most = 30;
-  const auto open = std::count_if(problem.blocks.begin(), problem.blocks.end(),
-                                  [](const Block& block) { return block.law.one_sided(); });
+  const auto touching = std::count_if(problem.blocks.begin(), problem.blocks.end(),
+                                      [](const Block& block) { return block.law.one_sided(); });
   const bool newton =
-      settings.method == Method::automatic && open > 1 && all_for_cone_newton(problem);
+      settings.method == Method::automatic && touching > 1 && all_for_cone_newton(problem);
+  int before = 0;
   if (newton) {
-    Multipliers result = cone_newton(problem, settings, most);
+    Multipliers result = solve_touching(problem, settings);
     if (result.converged) return result;
+    before = result.iterations;
   }
   if (std::none_of(problem.blocks.begin(), problem.blocks.end(), follows))
     return solve_fixed_sets(problem, settings);
   Multipliers settled = settle_bounds(problem, settings);
+  settled.iterations += before;
   if (!newton || settled.converged || settled.lambda.size() != problem.rows()) return settled;
   Problem again = problem;
   again.start = settled.lambda;
-  Multipliers result = cone_newton(again, settings, most);
+  Multipliers result = cone_newton(again, settings, 30);
   return result.converged ? result : settled;
 }
 

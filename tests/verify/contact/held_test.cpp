@@ -126,5 +126,66 @@ TEST(HeldByContact, ABodyInNoPairNeedsSupports)
   EXPECT_NE(refusal_of(scene).find("part 2 of 2"), std::string::npos);
 }
 
+/// Blocks on one another, soft and stiff ones in turn, on the floor.
+step::Scene tower(int blocks, double friction)
+{
+  step::Scene scene;
+  std::string prefix;
+  for (int k = 0; k < blocks; ++k) {
+    test::BlockShape shape{2 + k % 2, 2 + k % 2, 2, Vec3(narrow, narrow, high)};
+    shape.map = [k](const Vec3& X) { return Vec3(X + Vec3(0.001 * (k % 3), 0, k * high)); };
+    const mesh::Mesh block = test::block(shape);
+    scene.mesh = k == 0 ? block : test::joined(block, scene.mesh);
+  }
+  // The last block is named first: "a_…", the one before "b_a_…", and the first "b_…b_…".
+  for (int k = blocks - 1; k >= 0; --k) {
+    const std::string own = prefix + (k > 0 ? "a_" : "");
+    const std::string below = prefix + (k > 1 ? "b_a_" : "b_");
+    scene.tissue.materials.push_back({k % 2 == 0 ? 1e7 : young, poisson, density, 0.0, 0.0});
+    scene.contact.pairs.push_back(
+        {"under " + std::to_string(k), own + "z0", k > 0 ? below + "z1" : "floor", friction});
+    prefix += "b_";
+  }
+  scene.contact.obstacles = {{"floor"}};
+  scene.tissue.model = tissue::Model::linear;
+  scene.tissue.boundary.gravity = Vec3(0, 0, -g);
+  return scene;
+}
+
+TEST(HeldByContact, ATowerCarriesItself)
+{
+  constexpr int blocks = 5;
+  for (const double friction : {0.3, 1.0}) {
+    step::Scene scene = tower(blocks, friction);
+    scene.time.is_static = true;
+    const test::Run run = test::run(scene);
+    const double weight = density * g * narrow * narrow * high;
+    for (int k = 0; k < blocks; ++k) {
+      const contact::PairReport& report =
+          run.reports.back().contact[static_cast<std::size_t>(blocks - 1 - k)];
+      EXPECT_NEAR(report.force.z(), -(blocks - k) * weight, 1e-6 * weight) << k;
+      EXPECT_LT(report.force.head<2>().norm(), 1e-6 * weight) << k;
+    }
+  }
+}
+
+// At rest, nothing changes any more: the same corners touch and stick over all steps.
+TEST(HeldByContact, ATowerStandsStill)
+{
+  step::Scene scene = tower(3, 0.5);
+  scene.time.start_in_equilibrium = true;
+  scene.time.step = 0.005;
+  scene.time.end = 0.5;
+  const test::Run run = test::run(scene);
+  const auto& first = run.reports[1];
+  for (std::size_t n = 2; n < run.reports.size(); ++n)
+    for (std::size_t p = 0; p < 3; ++p) {
+      EXPECT_EQ(run.reports[n].contact[p].sticking, first.contact[p].sticking) << n << ' ' << p;
+      EXPECT_EQ(run.reports[n].contact[p].slipping, first.contact[p].slipping) << n << ' ' << p;
+    }
+  const core::VecX moved = run.states.back().tissue.u.value - run.states.front().tissue.u.value;
+  EXPECT_LT(moved.size() > 0 ? moved.cwiseAbs().maxCoeff() : 0.0, 1e-8);
+}
+
 }  // namespace
 }  // namespace trocar
