@@ -5,7 +5,7 @@ packages_to_run=(g++ cmake ninja-build pkg-config git libpetsc-real-dev libhdf5-
   libmetis-dev libsuitesparse-dev libeigen3-dev libboost-dev openmpi-bin
   libopenblas0-serial gmsh python3-h5py python3-numpy python3-matplotlib)
 packages_to_test=(libgtest-dev libgmsh-dev)
-packages_to_develop=(clang-format)
+packages_to_develop=(clang-format libsiconos-numerics-dev)
 
 # Installs those of the packages that are missing, or says how to.
 install_packages() {
