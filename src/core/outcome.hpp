@@ -10,7 +10,8 @@ namespace trocar::core {
 struct Refusal
 {
   std::string why;
-  bool unsolved = false;  ///< a linear solver stopped short of its tolerance
+  bool unsolved = false;    ///< a linear solver stopped short of its tolerance
+  bool indefinite = false;  ///< an exact tangent has no factor
 };
 
 /// A value, or the reason why it could not be computed; a smaller step may succeed. All ranks hold

@@ -162,6 +162,7 @@ Multipliers cone_newton(const Problem& problem, const Settings& settings, int mo
   constexpr int most_idle = 8;  // steps without a smaller residual: it goes in a circle
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;
+  bool last = false;  // one more step within the tolerance: it solves rows that hold exactly
   for (int k = 0; k <= most; ++k) {
     const double residual = kkt_residual(problem, lambda);
     if (!std::isfinite(residual)) break;
@@ -171,7 +172,8 @@ Multipliers cone_newton(const Problem& problem, const Settings& settings, int mo
       best = residual;
       result.lambda = lambda;
     }
-    if (residual <= settings.tolerance || k == most) break;
+    if (last || k == most) break;
+    last = residual <= settings.tolerance;
     lambda += Equations(problem, lambda, give).step();
     ++result.iterations;
   }

@@ -79,7 +79,7 @@ Differenced velocity_of(const Model& model, const State& state, double h)
 Scheme::Scheme(const Model& model, const State& old, const core::TimeStep& asked, int order)
     : now_(asked), past_(&old), old_velocity_(velocity_of(model, old, asked.h))
 {
-  if (now_.is_static) now_.proximal = model.proximal;
+  if (now_.is_static && now_.proximal == 0.0) now_.proximal = model.proximal;
   if (now_.is_static) return;
   constexpr double longest = 2.0 + 1e-6, shortest = 0.2 - 1e-6;  // stable for r <= 1 + √2
   const double h = now_.h, r = old.h > 0.0 ? h / old.h : 0.0;

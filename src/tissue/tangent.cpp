@@ -53,7 +53,8 @@ core::Outcome<core::Done> Tissue::make_factor(const LinearisationPoint& at)
 core::Refusal Tissue::without_factor(const core::Refusal& refusal) const
 {
   if (!tangent_.exact()) throw core::solver_error(refusal.why);
-  return {"the exact tangent has no factor (an instability, or too large a step): " + refusal.why};
+  return {"the exact tangent has no factor (an instability, or too large a step): " + refusal.why,
+          false, true};
 }
 
 /// Makes the factor of the state `old` again when the solver now has another one (after a rejected

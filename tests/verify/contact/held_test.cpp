@@ -21,6 +21,7 @@ struct Kind
   bool quadratic = false;
   tissue::Model model = tissue::Model::linear;
   double friction = 0.5;
+  tissue::Dilatation dilatation = tissue::Dilatation::pointwise;
 };
 
 Mat3 turn(double angle)
@@ -39,6 +40,7 @@ step::Scene stack(const Kind& kind, double angle)
   scene.mesh = test::joined(test::block(lower), test::block(upper));
   for (Vec3& x : scene.mesh.x) x = turn(angle) * x;
   scene.tissue.model = kind.model;
+  scene.tissue.dilatation = kind.dilatation;
   scene.tissue.materials.assign(2, {young, poisson, density, 0.0, 0.0});
   scene.tissue.boundary.fixed = {{"a_z0", 7}};
   scene.contact.pairs = {{"faces", "b_z0", "a_z1", kind.friction}};
@@ -62,6 +64,31 @@ TEST(HeldByContact, ABlockCarriesItsLoad)
         EXPECT_LT((report.contact[0].force - load * down).norm(), 1e-8 * load);
         EXPECT_LE(report.linearisations, model == tissue::Model::linear ? 6 : 10);
       }
+}
+
+// Every element and law.
+TEST(HeldByContact, ByAnyElement)
+{
+  using tissue::Dilatation;
+  using tissue::Model;
+  const std::vector<Kind> kinds{{false, Model::neo_hookean, 0.5, Dilatation::pointwise},
+                                {false, Model::corotational, 0.5, Dilatation::nodal},
+                                {false, Model::neo_hookean, 0.5, Dilatation::nodal},
+                                {true, Model::linear, 0.5, Dilatation::element},
+                                {true, Model::neo_hookean, 0.5, Dilatation::element},
+                                {true, Model::corotational, 0.5, Dilatation::nodal}};
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(testing::Message() << kind.quadratic << static_cast<int>(kind.model)
+                                    << static_cast<int>(kind.dilatation));
+    step::Scene scene = stack(kind, 0.2);
+    const Vec3 down = turn(0.2) * Vec3(0, 0, -1.0);
+    scene.tissue.boundary.gravity = g * down;
+    const test::Run run = test::run(scene);
+    const double load = density * g * narrow * narrow * high;
+    EXPECT_LT((run.reports.back().contact[0].force - load * down).norm(), 1e-7 * load);
+    const bool exact = kind.model == tissue::Model::neo_hookean;  // then the proximal term is large
+    EXPECT_LE(run.reports.back().linearisations, exact ? 25 : 12);
+  }
 }
 
 // A body that slides along a smooth plane is not held; one that its own supports hold sideways is.
