@@ -1,9 +1,46 @@
 #include <algorithm>
+#include <sstream>
 
 #include "contact/contacts.hpp"
 #include "contact/slip.hpp"
+#include "core/failure.hpp"
+#include "core/words.hpp"
 
 namespace trocar::contact {
+namespace {
+
+std::string at_place(const Vec3& x)
+{
+  std::ostringstream text;
+  text << '(' << core::shown(x.x()) << ", " << core::shown(x.y()) << ", " << core::shown(x.z())
+       << ") m";
+  return text.str();
+}
+
+}  // namespace
+
+State start(const std::vector<Pair>& pairs, const Deformation& now)
+{
+  constexpr double farther = 3.0;  // how deep an overlap is looked for, in search distances
+  State state;
+  state.pairs.resize(pairs.size());
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (!pairs[p].closed) continue;
+    Pair wide = pairs[p];
+    wide.search *= farther;
+    if (!near(wide, now)) continue;
+    for (const Meeting& at : meet(wide, now))
+      if (at.gap < -pairs[p].search)
+        throw core::data_error("option -contact_pairs: the surfaces of pair '" + pairs[p].name +
+                               "' overlap by " + core::shown(-at.gap) + " m at " +
+                               at_place(now.at(at.node)) + ", more than -contact_search " +
+                               core::shown(pairs[p].search) +
+                               " (mend the mesh, or search farther)");
+    for (const Meeting& at : meet(pairs[p], now))
+      if (at.gap < 0.0) state.pairs[p].overlapped.push_back({at.node, -at.gap});
+  }
+  return state;
+}
 
 bool same_touching(const State& a, const State& b)
 {
@@ -66,6 +103,8 @@ State accept(const Contacts& contacts, const Ending& ending, const Deformation& 
 {
   State state;
   state.pairs.resize(contacts.pairs.size());
+  for (std::size_t p = 0; p < contacts.state.pairs.size(); ++p)
+    state.pairs[p].overlapped = contacts.state.pairs[p].overlapped;
   reports.assign(contacts.pairs.size(), {});
   for (const Group& group : ending.rows.groups) {
     PairReport& report = reports[static_cast<std::size_t>(group.pair)];

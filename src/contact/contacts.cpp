@@ -50,6 +50,7 @@ std::vector<Pair> pairs_of(const Settings& settings, const mesh::Mesh& mesh,
     Pair pair{one.name, slave, master_of(one, settings, mesh), one.friction, one.shear_limit, 0.0};
     refuse_shared(pair);
     pair.search = one.search > 0.0 ? one.search : slave.mean_edge();
+    pair.closed = one.closed;
     for (int node : slave.corners()) {
       // A corner is slave in one pair only, in the order of the pairs.
       const bool taken = !slave_in.emplace(node, one.name).second;
@@ -68,14 +69,13 @@ std::vector<Pair> pairs_of(const Settings& settings, const mesh::Mesh& mesh,
 
 namespace {
 
-const Touch* touch_of(const State& state, int pair, int node)
+/// The entry of a node in a list by ascending nodes, or nothing.
+template <class Entry>
+const Entry* entry_of(const std::vector<Entry>& list, int node)
 {
-  if (state.pairs.empty()) return nullptr;
-  const std::vector<Touch>& touches = state.pairs[static_cast<std::size_t>(pair)].touches;
-  const auto at =
-      std::lower_bound(touches.begin(), touches.end(), node,
-                       [](const Touch& touch, int which) { return touch.node < which; });
-  return at != touches.end() && at->node == node ? &*at : nullptr;
+  const auto at = std::lower_bound(list.begin(), list.end(), node,
+                                   [](const Entry& one, int which) { return one.node < which; });
+  return at != list.end() && at->node == node ? &*at : nullptr;
 }
 
 /// Normal, and two tangents of which the first points towards a fixed neighbour: so it turns with
@@ -136,7 +136,12 @@ Rows add_rows(const Contacts& contacts, const Deformation& now, constraint::Set&
     if (!near(pair, now)) continue;
     for (Meeting& meeting : meet(pair, now)) {
       Group group{static_cast<int>(p), std::move(meeting), nullptr, core::Mat3::Zero()};
-      group.touch = touch_of(contacts.state, group.pair, group.meeting.node);
+      if (!contacts.state.pairs.empty()) {
+        const PairState& known = contacts.state.pairs[p];
+        group.touch = entry_of(known.touches, group.meeting.node);
+        const Overlapped* over = entry_of(known.overlapped, group.meeting.node);
+        if (over) group.meeting.open(over->by);
+      }
       group.frame = frame_at(pair.slave, group.meeting, now);
       add_group(contacts, now, group, set);
       rows.groups.push_back(std::move(group));

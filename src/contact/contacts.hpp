@@ -18,6 +18,10 @@ namespace trocar::contact {
 std::vector<Pair> pairs_of(const Settings& settings, const mesh::Mesh& mesh,
                            const fem::Dirichlet& fixed);
 
+/// The state of bodies as they are given. With `Pair::closed` an overlap of corners is kept. Throws
+/// Failure (65) with the place where it is more than the search distance.
+State start(const std::vector<Pair>& pairs, const Deformation& now);
+
 /// Pairs and their state at the start of the step. Borrows everything.
 struct Contacts
 {

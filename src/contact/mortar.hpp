@@ -21,6 +21,7 @@ struct Pair
   double friction = 0.0;                                   ///< Coulomb's coefficient
   double shear = std::numeric_limits<double>::infinity();  ///< limit of the shear stress [Pa]
   double search = 0.0;       ///< farthest distance that is looked at [m]
+  bool closed = false;       ///< see PairSettings::closed
   std::vector<bool> held{};  ///< slave corners that are prescribed, or slave of a pair before
 };
 
@@ -34,6 +35,13 @@ struct Meeting
   Vec3 normal;                       ///< out of the slave; into an obstacle
   double area;                       ///< covered ∫φ_j [m²]
   double least_gap;                  ///< least distance of a point around the corner [m]
+
+  /// Counts an overlap of this size as closed.
+  void open(double by)
+  {
+    gap += by;
+    least_gap += by;
+  }
 };
 
 /// The corners of a pair that have something within the search distance, in ascending order. Every

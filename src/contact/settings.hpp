@@ -16,6 +16,7 @@ struct PairSettings
   std::string master;  ///< physical surface or obstacle
   double friction = 0.0;
   double shear_limit = std::numeric_limits<double>::infinity();  ///< [Pa]
+  bool closed = true;   ///< an overlap at the start counts as a closed gap without force
   double search = 0.0;  ///< farthest distance that is looked at [m]; 0: one edge of the slave
 };
 

@@ -36,16 +36,33 @@ struct Touch
   }
 };
 
-/// The touching corners of one pair, by ascending node.
+/// How far a slave corner overlapped the master at the start: what counts as closed there.
+struct Overlapped
+{
+  int node = -1;    ///< file node of the corner
+  double by = 0.0;  ///< > 0 [m]
+
+  /// See core/visit.hpp.
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& v)
+  {
+    v("node", "1", self.node);
+    v("by", "m", self.by);
+  }
+};
+
+/// State of one pair; lists by ascending node.
 struct PairState
 {
-  std::vector<Touch> touches;
+  std::vector<Touch> touches;          ///< corners that touch
+  std::vector<Overlapped> overlapped;  ///< as the bodies were given
 
   /// See core/visit.hpp.
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& v)
   {
     v("touch", "", self.touches);
+    v("overlapped", "", self.overlapped);
   }
 };
 

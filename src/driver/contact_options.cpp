@@ -25,6 +25,11 @@ void add_contact_options(std::vector<OptionSpec>& t)
                 not_negative("contact_search", "0", "m",
                              "farthest distance that is looked at; 0 = a mean edge of the slave"),
                 "<pair>");
+  with_override(
+      t,
+      choice("contact_initial", "closed", {"closed", "keep"},
+             "overlap at the start: a closed gap without force, or kept and pushed apart"),
+      "<pair>");
   t.push_back(list("obstacles", "rigid bodies that tissue may touch"));
   t.push_back(choice("obstacle_<obstacle>_shape", "plane", {"plane", "sphere", "cylinder"},
                      "half space, ball, or long cylinder"));
@@ -108,10 +113,12 @@ contact::Settings read_contact(Options& options, const mesh::Mesh& mesh, const b
                                "' has no friction to be limited (-contact_friction)");
     if (shear > 0.0) pair.shear_limit = shear;
     pair.search = options.real("contact_<pair>_search", pair.name);
+    pair.closed = options.text("contact_<pair>_initial", pair.name) == "closed";
     used.insert(pair.master);
     settings.pairs.push_back(pair);
   }
-  for (const char* name : {"contact_friction", "contact_shear_limit", "contact_search"})
+  for (const char* name :
+       {"contact_friction", "contact_shear_limit", "contact_search", "contact_initial"})
     if (settings.pairs.empty() && options.given(name))
       throw core::option_error("option -" + std::string(name) +
                                ": there is no contact (-contact_pairs)");

@@ -68,8 +68,8 @@ void accept_contact(const Model& model, const State& old, Newton& newton)
 {
   State& next = newton.state();
   StepReport& report = newton.report();
-  next.contact = {};
   report.contact.assign(model.contact.size(), {});
+  for (contact::PairState& pair : next.contact.pairs) pair.touches.clear();
   if (!newton.solution().contact) return;
   const fem::GlobalField u = model.space.gather(next.tissue.u);
   const fem::GlobalField before = model.space.gather(old.tissue.u);

@@ -85,6 +85,11 @@ void refuse_indices_of_nothing(const State& state, const fem::Space& space)
       sound(touch.slave);
       sound(touch.master);
     }
+    before = -1;
+    for (const contact::Overlapped& one : pair.overlapped) {
+      among(one.node, before + 1, nodes);
+      before = one.node;
+    }
   }
 }
 

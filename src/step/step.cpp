@@ -67,6 +67,10 @@ Outcome<Accepted> initial_state(Model& model)
     state.insertions.push_back(insertion::start(*model.ground, needle));
   }
   if (model.cavities) state.cavities = cavity::start(*model.cavities);
+  if (!model.contact.empty()) {
+    const fem::GlobalField none = model.space.gather(state.tissue.u);
+    state.contact = contact::start(model.contact, {model.scene.mesh, none});
+  }
   const TimeSettings& time = model.scene.time;
   const core::TimeStep start = core::TimeStep::at_start(time.step);
   if (time.start_in_equilibrium || time.is_static) return equilibrium(model, state, start);

@@ -172,6 +172,9 @@ refuses("slave that is held", 65, ["rest", "z0"], {**touching, "-contact_pairs":
 refuses("curve of an obstacle without its columns", 65, ["wall.csv", "time,x,y,z"],
         {**touching, "-obstacle_floor_curve": written("wall.csv", "time,x\n0,0\n")}, ranks=(1, 3))
 refuses("obstacle named like a surface", 64, ["z0", "surface"], {"-obstacles": "z0", "-contact_pairs": "rest:z1:z0"})
+refuses("obstacle deep in the tissue", 65, ["rest", "overlap by 0.01", "search"],
+        {**touching, "-obstacle_floor_normal": "0,0,-1", "-obstacle_floor_origin": "0,0,0.03",
+         "-contact_search": "0.004"}, ranks=(1, 3))
 refuses("fields of no contact", 64, ["-output_fields", "contact"], {"-output_fields": "contact"})
 refuses("friction of no contact", 64, ["-contact_friction"], {"-contact_friction": "0.3"})
 refuses("few linearisations and contact", 64, ["-time_newton_max", "-contact_pairs"], {**touching, "-time_newton_max": "2"})
