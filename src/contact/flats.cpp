@@ -18,6 +18,25 @@ std::vector<Flat> flats(const Surface& surface, const Deformation& now)
   return all;
 }
 
+std::vector<Flat> flats(const Obstacle& obstacle, double t)
+{
+  std::vector<Flat> all;
+  const Vec3 by = obstacle.origin + obstacle.moved(t);
+  for (std::size_t f = 0; f < obstacle.skin->faces.size(); ++f) {
+    Triangle at = obstacle.skin->triangle(f);
+    for (Vec3& x : at) x += by;
+    all.push_back({static_cast<int>(f), {0, 1, 2}, at});
+  }
+  return all;
+}
+
+Bounds bounds_of(const Obstacle& obstacle, double t)
+{
+  Bounds bounds;
+  for (const Vec3& x : obstacle.skin->x) bounds.add(x + obstacle.origin + obstacle.moved(t));
+  return bounds;
+}
+
 Bounds bounds_of(const Surface& surface, const Deformation& now)
 {
   Bounds bounds;

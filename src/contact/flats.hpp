@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/clip.hpp"
+#include "contact/obstacle.hpp"
 #include "contact/surface.hpp"
 
 // The flat triangles that stand for faces in clipping, and boxes around them.
@@ -55,8 +56,11 @@ struct Flat
 };
 
 std::vector<Flat> flats(const Surface& surface, const Deformation& now);
+/// Those of an obstacle of shape `surface`, where it is at time t.
+std::vector<Flat> flats(const Obstacle& obstacle, double t);
 
 /// Box around a surface.
 Bounds bounds_of(const Surface& surface, const Deformation& now);
+Bounds bounds_of(const Obstacle& obstacle, double t);
 
 }  // namespace trocar::contact

@@ -61,10 +61,11 @@ class Mortar
 
   std::vector<Meeting> run()
   {
-    if (const auto* surface = std::get_if<Surface>(&pair_.master))
-      against(*surface);
+    const auto* obstacle = std::get_if<Obstacle>(&pair_.master);
+    if (obstacle && obstacle->shape != Obstacle::Shape::surface)
+      against(*obstacle);
     else
-      against(std::get<Obstacle>(pair_.master));
+      against_faces();
     join();
     return meetings();
   }
@@ -108,9 +109,11 @@ class Mortar
     }
   }
 
-  void against(const Surface& master)
+  /// The master's faces: those of a surface of the tissue, or of a rigid one.
+  void against_faces()
   {
-    others_ = flats(master, now_);
+    master_ = std::get_if<Surface>(&pair_.master);
+    others_ = master_ ? flats(*master_, now_) : flats(std::get<Obstacle>(pair_.master), now_.t);
     std::vector<std::pair<Box, int>> boxes;
     for (std::size_t k = 0; k < others_.size(); ++k)
       boxes.emplace_back(others_[k].bounds().grown(0.0), static_cast<int>(k));
@@ -124,15 +127,15 @@ class Mortar
       const FacePlaces face = slave_.places(mine.face, now_);
       hits_.clear();
       for (const auto& hit : hits) hits_.push_back(hit.second);
-      for (int hit : hits_) overlapping(master, face, mine, others_[static_cast<std::size_t>(hit)]);
+      for (int hit : hits_) overlapping(face, mine, others_[static_cast<std::size_t>(hit)]);
     }
   }
 
-  void overlapping(const Surface& master, const FacePlaces& face, const Flat& mine,
-                   const Flat& other)
+  void overlapping(const FacePlaces& face, const Flat& mine, const Flat& other)
   {
     for (const Overlap& piece : overlap(mine.x, other.x, pair_.search)) {
-      const FacePlaces onto = master.places(other.face, now_);
+      const FacePlaces onto = master_ ? master_->places(other.face, now_)
+                                      : FacePlaces{3, {other.x[0], other.x[1], other.x[2]}};
       for (const TrianglePoint& at : triangle_points()) {
         const SlavePoint point =
             slave_point(face, mine, piece.slave * at.at, at.weight * piece.area);
@@ -140,7 +143,7 @@ class Mortar
             project(onto, point.x, point.normal, other.param(piece.master * at.at));
         if (!there.found || std::abs(there.t) > pair_.search || behind(point, there.t)) continue;
         add(point, there.t, point.normal, [&](double w, std::map<int, double>& weights) {
-          add_weights(master, other.face, there.at, w, weights);
+          if (master_) add_weights(*master_, other.face, there.at, w, weights);
         });
       }
     }
@@ -229,9 +232,10 @@ class Mortar
   const Deformation& now_;
   const Surface& slave_;
   std::vector<Vec3> corner_normal_;
-  std::vector<Sums> sums_;    ///< by corner
-  std::vector<Flat> others_;  ///< of the master
-  std::vector<int> hits_;     ///< those near the present triangle of the slave
+  std::vector<Sums> sums_;           ///< by corner
+  const Surface* master_ = nullptr;  ///< nothing: an obstacle
+  std::vector<Flat> others_;         ///< of the master
+  std::vector<int> hits_;            ///< those near the present triangle of the slave
 };
 
 }  // namespace
@@ -249,6 +253,8 @@ bool near(const Pair& pair, const Deformation& now)
   const Vec3 middle = 0.5 * (mine.low + mine.high);
   const double reach = 0.5 * (mine.high - mine.low).norm() + pair.search;
   const auto& obstacle = std::get<Obstacle>(pair.master);
+  if (obstacle.skin)
+    return bg::intersects(mine.grown(pair.search), bounds_of(obstacle, now.t).grown(0.0));
   return clearance(obstacle, middle - obstacle.moved(now.t)).distance < reach;
 }
 

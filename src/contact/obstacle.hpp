@@ -1,20 +1,22 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "core/csv.hpp"
 #include "core/math.hpp"
+#include "mesh/skin.hpp"
 
 namespace trocar::contact {
 
 using core::Vec3;
 
-/// A rigid body: the half space below a plane, a ball, or a long cylinder. It may move along a
-/// path without turning.
+/// A rigid body: the half space below a plane, a ball, a long cylinder, or what a surface encloses.
+/// It may move along a path without turning.
 struct Obstacle
 {
-  enum class Shape { plane, sphere, cylinder };
+  enum class Shape { plane, sphere, cylinder, surface };
   std::string name;
   Shape shape = Shape::plane;
   Vec3 origin = Vec3::Zero();       ///< a point of the plane or of the axis, the ball's middle [m]
@@ -22,11 +24,13 @@ struct Obstacle
   double radius = 0.0;              ///< of ball and cylinder [m]
   std::optional<core::Csv> path{};  ///< columns time [s], and its displacement x, y, z [m]
 
+  std::shared_ptr<const mesh::Skin> skin{};  ///< of shape `surface`; `origin` is added to it
+
   Vec3 moved(double t) const;  ///< displacement at a time [m]
 };
 
-/// Distance of x from the surface where the obstacle has not moved, negative inside [m], and its
-/// gradient: the way out.
+/// Distance of x from the surface of a shape other than `surface` where the obstacle has not moved,
+/// negative inside [m], and its gradient: the way out.
 struct Clearance
 {
   double distance;

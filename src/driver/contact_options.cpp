@@ -7,6 +7,7 @@
 #include "core/words.hpp"
 #include "driver/option_kinds.hpp"
 #include "driver/option_source.hpp"
+#include "io/stl.hpp"
 
 namespace trocar::driver {
 
@@ -31,13 +32,17 @@ void add_contact_options(std::vector<OptionSpec>& t)
              "overlap at the start: a closed gap without force, or kept and pushed apart"),
       "<pair>");
   t.push_back(list("obstacles", "rigid bodies that tissue may touch"));
-  t.push_back(choice("obstacle_<obstacle>_shape", "plane", {"plane", "sphere", "cylinder"},
-                     "half space, ball, or long cylinder"));
+  t.push_back(choice("obstacle_<obstacle>_shape", "plane",
+                     {"plane", "sphere", "cylinder", "surface"},
+                     "half space, ball, long cylinder, or what the surface of a file encloses"));
   t.push_back(vector("obstacle_<obstacle>_origin", "0,0,0", "m",
-                     "a point of the plane or of the cylinder's axis, the ball's middle"));
+                     "a point of the plane or of the cylinder's axis, the ball's middle; where the "
+                     "origin of a file is put"));
   t.push_back(vector("obstacle_<obstacle>_normal", "0,0,1", "1",
                      "out of the half space; along the cylinder's axis"));
   t.push_back(not_negative("obstacle_<obstacle>_radius", "0", "m", "of ball and cylinder"));
+  t.push_back(file("obstacle_<obstacle>_file", "STL file of a closed surface, text or binary"));
+  t.push_back(positive("obstacle_<obstacle>_scale", "1", "m", "length of the file's unit"));
   t.push_back(file("obstacle_<obstacle>_curve",
                    "CSV (columns time,x,y,z): its displacement over time [m]"));
 }
@@ -56,11 +61,23 @@ std::optional<core::Csv> read_path(const std::string& file, const base::Comm& co
   return path;
 }
 
+/// The surface of a file, in metres. Every rank reads the same text.
+std::shared_ptr<const mesh::Skin> read_skin(const std::string& file, double scale,
+                                            const base::Comm& comm)
+{
+  std::vector<mesh::Triangle> triangles = io::parse_stl(read_bytes(file, comm), file);
+  for (mesh::Triangle& triangle : triangles)
+    for (core::Vec3& x : triangle) x *= scale;
+  return std::make_shared<const mesh::Skin>(mesh::skin_of(triangles, file));
+}
+
 contact::Obstacle read_obstacle(Options& options, const std::string& name, const base::Comm& comm)
 {
   using Shape = contact::Obstacle::Shape;
-  const std::map<std::string, Shape> shapes{
-      {"plane", Shape::plane}, {"sphere", Shape::sphere}, {"cylinder", Shape::cylinder}};
+  const std::map<std::string, Shape> shapes{{"plane", Shape::plane},
+                                            {"sphere", Shape::sphere},
+                                            {"cylinder", Shape::cylinder},
+                                            {"surface", Shape::surface}};
   const std::string at = "obstacle_<obstacle>_";
   const auto bad = [&](const std::string& option, const std::string& why) {
     return core::option_error("option -obstacle_" + name + "_" + option + ": " + why);
@@ -71,6 +88,17 @@ contact::Obstacle read_obstacle(Options& options, const std::string& name, const
                              options.vector(at + "normal", name),
                              options.real(at + "radius", name),
                              read_path(options.text(at + "curve", name), comm)};
+  const std::string file = options.text(at + "file", name);
+  const double scale = options.real(at + "scale", name);
+  if (obstacle.shape == Shape::surface) {
+    if (file.empty()) throw bad("file", "a surface needs an STL file");
+    for (const char* one : {"radius", "normal"})
+      if (options.given_for(at + one, name)) throw bad(one, "a surface of a file has none");
+    obstacle.skin = read_skin(file, scale, comm);
+    return obstacle;
+  }
+  for (const char* one : {"file", "scale"})
+    if (options.given_for(at + one, name)) throw bad(one, "is for the shape 'surface'");
   const bool plane = obstacle.shape == Shape::plane;
   if (plane && options.given_for(at + "radius", name)) throw bad("radius", "a plane has none");
   if (!plane && !(obstacle.radius > 0.0)) throw bad("radius", "must be positive");

@@ -172,12 +172,17 @@ Invocation read_invocation(int argc, char** argv, const base::Comm& comm)
   return invocation;
 }
 
-core::Csv read_csv(const std::string& file, const base::Comm& comm)
+std::string read_bytes(const std::string& file, const base::Comm& comm)
 {
   std::string text;
   base::on_root(comm, [&] { text = text_of(file, "", core::ExitCode::data); });
   comm.broadcast(text);
-  return core::parse_csv(text, file);
+  return text;
+}
+
+core::Csv read_csv(const std::string& file, const base::Comm& comm)
+{
+  return core::parse_csv(read_bytes(file, comm), file);
 }
 
 }  // namespace trocar::driver

@@ -30,6 +30,10 @@ struct Invocation
 /// that do not exist or include themselves. Collective.
 Invocation read_invocation(int argc, char** argv, const base::Comm& comm);
 
+/// The contents of a file that an option names, up to 16 MB: rank 0 reads it. Failure (65).
+/// Collective.
+std::string read_bytes(const std::string& file, const base::Comm& comm);
+
 /// Reads a CSV file that an option names: rank 0 reads it, every rank parses it. Failure (65).
 /// Collective.
 core::Csv read_csv(const std::string& file, const base::Comm& comm);

@@ -175,6 +175,29 @@ refuses("obstacle named like a surface", 64, ["z0", "surface"], {"-obstacles": "
 refuses("obstacle deep in the tissue", 65, ["rest", "overlap by 0.01", "search"],
         {**touching, "-obstacle_floor_normal": "0,0,-1", "-obstacle_floor_origin": "0,0,0.03",
          "-contact_search": "0.004"}, ranks=(1, 3))
+def stl(name, faces):
+    """A text STL file of a tet's faces, each three of its corners."""
+    x = ["0 0 -0.2", "0.1 0 -0.2", "0 0.1 -0.2", "0 0 -0.1"]
+    return written(name, "solid a\n" + "".join(
+        "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x[k]}\n" for k in face) + "endloop\nendfacet\n"
+        for face in faces) + "endsolid a\n")
+
+
+closed = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+rigid = {**touching, "-obstacle_floor_shape": "surface"}
+refuses("rigid surface without a file", 64, ["-obstacle_floor_file", "STL"], rigid)
+refuses("file of a plane", 64, ["-obstacle_floor_file", "surface"], {**touching, "-obstacle_floor_file": stl("plane.stl", closed)})
+refuses("radius of a rigid surface", 64, ["-obstacle_floor_radius"],
+        {**rigid, "-obstacle_floor_file": stl("closed.stl", closed), "-obstacle_floor_radius": "1"})
+refuses("open rigid surface", 65, ["open.stl", "open at", "closed"], {**rigid, "-obstacle_floor_file": stl("open.stl", closed[:3])}, ranks=(1, 3))
+refuses("rigid surface inside out", 65, ["inside.stl", "inside out"],
+        {**rigid, "-obstacle_floor_file": stl("inside.stl", [face[::-1] for face in closed])}, ranks=(1, 3))
+refuses("rigid surface with a turned triangle", 65, ["turned.stl", "turned against"],
+        {**rigid, "-obstacle_floor_file": stl("turned.stl", closed[:3] + [closed[3][::-1]])})
+refuses("no STL", 65, ["no.stl", "no STL file"], {**rigid, "-obstacle_floor_file": written("no.stl", "hello\n")})
+refuses("STL cut off", 65, ["cut.stl", "endsolid"], {**rigid, "-obstacle_floor_file": written("cut.stl", "solid a\nfacet normal 0 0 1\n")})
+refuses("STL vertex of two numbers", 65, ["two.stl", "line 3", "vertex"],
+        {**rigid, "-obstacle_floor_file": written("two.stl", "solid a\nfacet normal 0 0 1\nvertex 0 1\nendsolid\n")})
 refuses("fields of no contact", 64, ["-output_fields", "contact"], {"-output_fields": "contact"})
 refuses("friction of no contact", 64, ["-contact_friction"], {"-contact_friction": "0.3"})
 refuses("few linearisations and contact", 64, ["-time_newton_max", "-contact_pairs"], {**touching, "-time_newton_max": "2"})
