@@ -8,7 +8,7 @@ namespace {
 std::vector<OptionSpec> general_options()
 {
   return {
-      file("mesh", "Gmsh file (2.2 or 4.1, ascii or binary)"),
+      file("mesh", "Gmsh file (2.2 or 4.1, ascii or binary), or several between commas"),
       positive("mesh_scale", "1", "1", "factor on the mesh's coordinates, 1e-3 for millimetres"),
       choice("analysis", "dynamic", {"dynamic", "static", "pv_curve"},
              "steps in time; equilibrium: one, or a quasi-static path with time_end; or "

@@ -204,10 +204,11 @@ Scenario read_scenario(Options& options, const base::Comm& comm)
   scenario.restart = read_restart_settings(options, scenario.output.folder);
   scenario.energy = options.flag("output_energy");
   scenario.check_only = options.flag("check");
-  const std::string file = options.text("mesh");
-  if (file.empty()) throw core::option_error("option -mesh is missing: a Gmsh file is needed");
+  const std::vector<std::string> files = core::split(options.text("mesh"), ',');
+  if (files.empty() || files.front().empty())
+    throw core::option_error("option -mesh is missing: a Gmsh file is needed");
   scenario.mesh =
-      with_cavities_hollow(options, io::read_gmsh(file, options.real("mesh_scale"), comm));
+      with_cavities_hollow(options, io::read_gmsh(files, options.real("mesh_scale"), comm));
   std::vector<tissue::Material> materials = read_materials(options, scenario.mesh);
   const tissue::Dilatation dilatation =
       shape_elements(options.text("tissue_element"), materials, scenario.mesh);

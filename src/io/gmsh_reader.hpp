@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mesh/mesh.hpp"
 
@@ -12,5 +13,7 @@ namespace trocar::io {
 /// Throws Failure (65) on every rank, with file and tag, for a mesh that cannot be used.
 /// Collective.
 mesh::Mesh read_gmsh(const std::string& file, double scale, const base::Comm& comm);
+/// The meshes of several files as one, see mesh::joined. Collective.
+mesh::Mesh read_gmsh(const std::vector<std::string>& files, double scale, const base::Comm& comm);
 
 }  // namespace trocar::io

@@ -108,6 +108,7 @@ void Results::write_mesh(base::H5File& file, const mesh::Mesh& mesh) const
   file.write("/mesh/elem_tag",
              std::vector<std::int64_t>(mesh.elem_tag.begin(), mesh.elem_tag.end()), 0, "1");
   file.write_words("/mesh/volumes", mesh.volumes);
+  if (!mesh.file_of.empty()) file.write_words("/mesh/file", mesh.file_of);
 }
 
 /// Rewrites run.h5 with room for twice as many rows.

@@ -50,6 +50,7 @@ void broadcast(Mesh& mesh, const base::Comm& comm)
   mesh.index_middles();
   comm.broadcast(mesh.region);
   comm.broadcast(mesh.volumes);
+  comm.broadcast(mesh.file_of);
   comm.broadcast(mesh.node_tag);
   comm.broadcast(mesh.elem_tag);
   comm.broadcast(mesh.remarks);

@@ -37,6 +37,8 @@ Mesh without(const Mesh& mesh, int volume, std::vector<int>& number)
   rest.remarks = mesh.remarks;
   rest.volumes = mesh.volumes;
   rest.volumes.erase(rest.volumes.begin() + volume);
+  rest.file_of = mesh.file_of;
+  if (!rest.file_of.empty()) rest.file_of.erase(rest.file_of.begin() + volume);
   number.assign(mesh.x.size(), -1);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     if (mesh.region[t] != volume)

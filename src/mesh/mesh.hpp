@@ -43,7 +43,7 @@ struct PointGroup
 /// numbers, without communication, and ties are decided alike on all ranks.
 struct Mesh
 {
-  std::string file;
+  std::string file;                  ///< of several files their names, between commas
   std::string hash;                  ///< FNV-1a of the file's bytes
   double unit = 1.0;                 ///< length unit of the file's coordinates [m]
   std::vector<Vec3> x;               ///< reference positions [m], by ascending Gmsh node tag
@@ -51,6 +51,7 @@ struct Mesh
   std::vector<Middles> middles;      ///< middle nodes of the edges `tet_edges`; empty: linear tets
   std::vector<int> region;           ///< per tet, index into `volumes`
   std::vector<std::string> volumes;  ///< names of the physical volumes, in tag order
+  std::vector<std::string> file_of;  ///< file of every volume
   std::vector<SurfaceGroup> surfaces;
   std::vector<PointGroup> points;
   std::vector<long long> node_tag, elem_tag;

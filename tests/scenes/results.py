@@ -5,7 +5,8 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy as np
 
-from harness import check, completed, finish, geometry, options, small_block, structured
+from harness import (check, completed, finish, geometry, options, small_block, structured,
+                     written)
 from harness import run as launch
 
 settings = options("small_insertion.opts")
@@ -121,6 +122,23 @@ with open(os.path.join(folder, "run.xdmf")) as stream:
     text = stream.read()
 check(text.count('Center="Cell"') == 4 * (1 + 4) and 'Name="nodal_stress" AttributeType="Matrix" Center="Node"' in text,
       "ParaView's file names them by tet and by node")
+
+# Two files: rows by file, names of the files, and the same result in each of two equal blocks.
+with open(small_block(), encoding="latin-1") as stream:
+    text = stream.read()
+for group in ("x0", "x1", "y0", "y1", "z0", "z1", "beam"):
+    text = text.replace(f'"{group}"', f'"other_{group}"')
+first, second = small_block(), written("other.msh", text)
+two = {"-mesh": f"{first},{second}", "-analysis": "static", "-fix": "z0,other_z0", "-gravity": "1,2,-9.81"}
+folder = completed(two, 2)
+with h5py.File(os.path.join(folder, "run.h5")) as r, \
+        h5py.File(os.path.join(folder, "fields", "step_000000.h5")) as step:
+    u, half = step["displacement"][:], len(r["mesh/coordinates"]) // 2
+    check(abs(u).max() > 1e-5 and abs(u[:half] - u[half:]).max() < 1e-12 * abs(u).max() + 1e-15,
+          "blocks of two files sag alike")
+    check([name.decode() for name in r["mesh/file"][:]] == [first, second]
+          and [name.decode() for name in r["mesh/volumes"][:]] == ["beam", "other_beam"],
+          "volumes know their files")
 
 # Contact on request: at the slave's corners, what the histories count.
 ball = options("ball_on_block.opts")
