@@ -1,23 +1,12 @@
 #include <algorithm>
-#include <sstream>
 
 #include "contact/contacts.hpp"
 #include "contact/slip.hpp"
 #include "core/failure.hpp"
+#include "core/place.hpp"
 #include "core/words.hpp"
 
 namespace trocar::contact {
-namespace {
-
-std::string at_place(const Vec3& x)
-{
-  std::ostringstream text;
-  text << '(' << core::shown(x.x()) << ", " << core::shown(x.y()) << ", " << core::shown(x.z())
-       << ") m";
-  return text.str();
-}
-
-}  // namespace
 
 State start(const std::vector<Pair>& pairs, const Deformation& now)
 {
@@ -33,7 +22,7 @@ State start(const std::vector<Pair>& pairs, const Deformation& now)
       if (at.gap < -pairs[p].search)
         throw core::data_error("option -contact_pairs: the surfaces of pair '" + pairs[p].name +
                                "' overlap by " + core::shown(-at.gap) + " m at " +
-                               at_place(now.at(at.node)) + ", more than -contact_search " +
+                               core::shown(now.at(at.node)) + ", more than -contact_search " +
                                core::shown(pairs[p].search) +
                                " (mend the mesh, or search farther)");
     for (const Meeting& at : meet(pairs[p], now))

@@ -151,18 +151,25 @@ class Mortar
 
   /// True when another master face is met nearer than at the distance t: a body may have several
   /// layers within the search distance. Nearer by less than a tenth of its edge is the same layer.
+  /// An overlap (t < 0) with the back of a face in between is none: the face there belongs to the
+  /// far side of the master.
   bool behind(const SlavePoint& point, double t) const
   {
-    constexpr double same = 0.1, rim = 1e-9;
+    constexpr double same = 0.1, rim = 1e-9, oblique = 0.2;
     for (int hit : hits_) {
       const Triangle& x = others_[static_cast<std::size_t>(hit)].x;
       core::Mat3 sides;
       sides << x[1] - x[0], x[2] - x[0], -point.normal;
       const Vec3 normal = sides.col(0).cross(sides.col(1));
-      if (normal.dot(point.normal) >= -0.2 * normal.norm()) continue;
+      const double facing = -normal.dot(point.normal) / normal.norm();
+      const bool back = facing < -oblique && t < 0.0;
+      if (facing <= oblique && !back) continue;
       const Vec3 at = sides.inverse() * (point.x - x[0]);
       const bool inside = at[0] >= -rim && at[1] >= -rim && at[0] + at[1] <= 1.0 + rim;
-      if (inside && std::abs(at[2]) < std::abs(t) - same * sides.col(0).norm()) return true;
+      if (!inside) continue;
+      if (back && at[2] < 0.0 && at[2] > t) return true;
+      const bool nearer = std::abs(at[2]) < std::abs(t) - same * sides.col(0).norm();
+      if (!back && nearer) return true;
     }
     return false;
   }

@@ -57,7 +57,8 @@ std::optional<core::Csv> read_path(const std::string& file, const base::Comm& co
   if (file.empty()) return std::nullopt;
   core::Csv path = read_csv(file, comm);
   core::require_time_column(path);
-  if (path.columns.size() != 4) throw core::data_error(file + ": columns must be time,x,y,z");
+  if (path.columns != std::vector<std::string>{"time", "x", "y", "z"})
+    throw core::data_error(file + ": columns must be time,x,y,z");
   return path;
 }
 

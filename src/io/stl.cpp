@@ -1,6 +1,7 @@
 #include "io/stl.hpp"
 
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -54,31 +55,44 @@ Vec3 vertex_of(const std::string& line, const std::string& where)
   return x;
 }
 
+std::string lower(std::string word)
+{
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
 std::vector<mesh::Triangle> from_text(const std::string& bytes, const std::string& file)
 {
   std::vector<mesh::Triangle> triangles;
   std::istringstream text(bytes);
-  std::size_t corners = 0, number = 0;
-  bool ended = false;
+  std::size_t corners = 3, number = 0;  // of the last facet
+  bool begun = false, ended = false;
   for (std::string line; std::getline(text, line);) {
     ++number;
     std::istringstream words(line);
     std::string word;
     if (!(words >> word)) continue;
+    word = lower(word);
     const std::string where = file + ": line " + std::to_string(number) + ": ";
-    if (number == 1 && word != "solid")
-      throw core::data_error(file + ": is no STL file (neither text nor binary of its size)");
-    if (word == "facet") triangles.emplace_back(), corners = 0;
+    if (!begun && word != "solid")
+      throw core::data_error(file + ": is no STL file (neither text, nor binary of " +
+                             std::to_string(bytes.size()) + " bytes)");
+    begun = true;
     if (word == "vertex") {
       if (triangles.empty() || corners == 3)
         throw core::data_error(where + "a vertex outside of a facet of three");
       triangles.back()[corners++] = vertex_of(line, where);
+      continue;
     }
-    if (word == "endfacet" && corners != 3)
-      throw core::data_error(where + "a facet without three vertices");
-    ended = word == "endsolid";
+    const bool closes = word == "facet" || word == "endfacet" || word == "endsolid";
+    if (closes && corners != 3) throw core::data_error(where + "a facet without three vertices");
+    if (word == "facet") {
+      triangles.push_back({Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+      corners = 0;
+    }
+    ended = ended || word == "endsolid";
   }
-  if (!ended) throw core::data_error(file + ": is cut off: it does not end with 'endsolid'");
+  if (!ended) throw core::data_error(file + ": is cut off: it has no 'endsolid'");
   return triangles;
 }
 

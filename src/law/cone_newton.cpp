@@ -119,7 +119,8 @@ class Equations
   VecX F_;
 };
 
-/// Open groups get multipliers of exactly zero: what the linear solve leaves there is rounding.
+/// Open groups get multipliers of exactly zero: what the linear solve leaves there is rounding, and
+/// would count as touching.
 void open_exactly(const Problem& problem, const VecX& give, double tolerance, VecX& lambda)
 {
   if (lambda.size() == 0) return;
@@ -127,8 +128,8 @@ void open_exactly(const Problem& problem, const VecX& give, double tolerance, Ve
   const VecX delta = problem.W * lambda + problem.g;
   for (const Block& block : problem.blocks) {
     const int n = block.first;
-    if (block.law.set == Law::Set::cone && give[n] > 0.0 && lambda[n] - delta[n] / give[n] <= 0.0)
-      clean.segment(n, block.law.rows()).setZero();
+    if (block.law.one_sided() && give[n] > 0.0 && lambda[n] - delta[n] / give[n] <= block.law.lower)
+      clean.segment(n, block.law.rows()).setConstant(block.law.lower);
   }
   if (kkt_residual(problem, clean) <= tolerance) lambda = clean;
 }
@@ -159,21 +160,24 @@ Multipliers cone_newton(const Problem& problem, const Settings& settings, int mo
   Multipliers result;
   const VecX give = mobility(problem);
   VecX lambda = problem.start.size() == problem.rows() ? problem.start : VecX::Zero(problem.rows());
-  constexpr int most_idle = 8;  // steps without a smaller residual: it goes in a circle
+  // It goes on below the tolerance while a step helps: in a stiff body 1e-9 m are no small force.
+  // Without a smaller residual it goes in a circle, or has come to rounding.
+  constexpr int most_idle = 8;
+  constexpr double tight = 1e-9;  // part of the displacements that the forces make on their own
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;
-  bool last = false;  // one more step within the tolerance: it solves rows that hold exactly
   for (int k = 0; k <= most; ++k) {
     const double residual = kkt_residual(problem, lambda);
     if (!std::isfinite(residual)) break;
     idle = residual < best ? 0 : idle + 1;
-    if (idle > most_idle) break;
     if (residual < best) {
       best = residual;
       result.lambda = lambda;
     }
-    if (last || k == most) break;
-    last = residual <= settings.tolerance;
+    const bool within = best <= settings.tolerance;
+    const double moved = result.lambda.cwiseProduct(give).cwiseAbs().maxCoeff();
+    if (within && best <= tight * moved) break;
+    if (idle > most_idle || k == most) break;
     lambda += Equations(problem, lambda, give).step();
     ++result.iterations;
   }

@@ -1,22 +1,13 @@
 #include "mesh/skin.hpp"
 
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "core/failure.hpp"
-#include "core/words.hpp"
+#include "core/place.hpp"
 
 namespace trocar::mesh {
 namespace {
-
-std::string at_place(const Vec3& x)
-{
-  std::ostringstream text;
-  text << "at (" << core::shown(x.x()) << ", " << core::shown(x.y()) << ", " << core::shown(x.z())
-       << ") m";
-  return text.str();
-}
 
 /// Every edge must be passed once each way.
 void require_closed(const Skin& skin, const std::string& file)
@@ -25,7 +16,7 @@ void require_closed(const Skin& skin, const std::string& file)
   for (const Face& face : skin.faces)
     for (std::size_t k = 0; k < 3; ++k) ++passed[{face[k], face[(k + 1) % 3]}];
   for (const auto& [edge, count] : passed) {
-    const std::string place = at_place(skin.x[static_cast<std::size_t>(edge.first)]);
+    const std::string place = "at " + core::shown(skin.x[static_cast<std::size_t>(edge.first)]);
     const auto back = passed.find({edge.second, edge.first});
     if (count > 1)
       throw core::data_error(file + ": an edge " + place +
@@ -35,6 +26,30 @@ void require_closed(const Skin& skin, const std::string& file)
       throw core::data_error(file + ": the surface is open " + place +
                              ": a rigid body needs a closed one");
   }
+}
+
+/// Every connected part must enclose a positive volume.
+void require_right_side_out(const Skin& skin, const std::string& file)
+{
+  std::vector<std::size_t> part(skin.x.size());
+  for (std::size_t i = 0; i < part.size(); ++i) part[i] = i;
+  const auto root = [&](int corner) {
+    auto i = static_cast<std::size_t>(corner);
+    while (part[i] != i) i = part[i] = part[part[i]];
+    return i;
+  };
+  for (const Face& face : skin.faces)
+    for (std::size_t k = 1; k < 3; ++k) part[root(face[k])] = root(face[0]);
+  std::map<std::size_t, double> six;  // times the volume of a part
+  for (std::size_t f = 0; f < skin.faces.size(); ++f) {
+    const std::size_t of = root(skin.faces[f][0]);
+    const Triangle at = skin.triangle(f);
+    six[of] += (at[0] - skin.x[of]).dot((at[1] - skin.x[of]).cross(at[2] - skin.x[of]));
+  }
+  for (const auto& [of, volume] : six)
+    if (!(volume > 0.0))
+      throw core::data_error(file + ": the surface is inside out at " + core::shown(skin.x[of]) +
+                             ": its triangles must be seen from outside in the positive sense");
 }
 
 }  // namespace
@@ -74,10 +89,7 @@ Skin skin_of(const std::vector<Triangle>& triangles, const std::string& file)
   }
   if (skin.faces.empty()) throw core::data_error(file + ": has no triangles");
   require_closed(skin, file);
-  if (!(skin.volume() > 0.0))
-    throw core::data_error(file +
-                           ": the surface is inside out: its triangles must be seen from "
-                           "outside in the positive sense");
+  require_right_side_out(skin, file);
   return skin;
 }
 

@@ -44,11 +44,12 @@ bool Model::in_contact(std::size_t body) const
 void Model::hold_bodies()
 {
   bodies = tissue::bodies_of(scene.mesh, tissue.fixed());
+  bool all = true;
   for (std::size_t b = 0; b < bodies.all.size(); ++b) {
-    if (bodies.all[b].held) continue;
-    if (!in_contact(b)) tissue::refuse_free(bodies, scene.mesh, b);
-    proximal = tissue::small_inertia(bodies, scene.tissue.materials);
+    if (!bodies.all[b].held && !in_contact(b)) tissue::refuse_free(bodies, scene.mesh, b);
+    all = all && bodies.all[b].held;
   }
+  if (!all) proximal = tissue::small_inertia(bodies, scene.tissue.materials);
 }
 
 bool Model::beams() const

@@ -4,20 +4,10 @@
 #include <limits>
 #include <sstream>
 
+#include "core/place.hpp"
 #include "core/words.hpp"
 
 namespace trocar::step {
-namespace {
-
-std::string at_place(const Vec3& X)
-{
-  std::ostringstream text;
-  text << '(' << core::shown(X.x()) << ", " << core::shown(X.y()) << ", " << core::shown(X.z())
-       << ") m";
-  return text.str();
-}
-
-}  // namespace
 
 std::string inverted_at(const Scene& scene, int tet)
 {
@@ -33,7 +23,7 @@ std::string inverted_at(const Scene& scene, int tet)
   std::ostringstream text;
   text << "an element of the tissue would turn inside out: tet " << mesh.elem_tag[at]
        << " of volume '" << mesh.volumes[static_cast<std::size_t>(mesh.region[at])] << "' near "
-       << at_place(middle)
+       << core::shown(middle)
        << (is_linear ? "; linear tissue is for small strains (take " + option +
                            " corotational, or "
                            "accept it with -tissue_allow_inversion)"
@@ -52,7 +42,7 @@ std::string not_held(const Model& model)
     names += (names.empty() ? "" : "; ") + (name.empty() ? "the tissue" : name);
   }
   return "neither supports nor contact hold " + names +
-         " (the loads push it off or along, or the surfaces are farther apart than "
+         " (the loads push it off or along or crush it, or the surfaces are farther apart than "
          "-contact_search)";
 }
 
@@ -74,10 +64,10 @@ std::string place_of(const Scene& scene, const Solution& solution, int row)
     for (const contact::Group& group : solution.of_contact.groups)
       if (row >= group.first && row < group.first + group.rows)
         return "contact '" + scene.contact.pairs[static_cast<std::size_t>(group.pair)].name +
-               "' where the undeformed slave surface has " + at_place(X);
+               "' where the undeformed slave surface has " + core::shown(X);
   }
   return "needle '" + scene.needles[static_cast<std::size_t>(one.body)].name +
-         "' where the undeformed tissue has " + at_place(X) + ", which a support holds";
+         "' where the undeformed tissue has " + core::shown(X) + ", which a support holds";
 }
 
 std::optional<core::Refusal> cannot_stand(const Scene& scene, const core::TimeStep& now,

@@ -28,10 +28,10 @@ Outcome<Accepted> advance_by(Model& model, const State& old, const Scheme& schem
 
 /// A static step. The exact tangent of a body that contact alone holds may be indefinite under its
 /// load, because it does not know what contact bears: then with more of the proximal term, which
-/// comes to rest more slowly. The last is about E/(ρL²).
+/// comes to rest more slowly.
 Outcome<Accepted> advance_static(Model& model, const State& old, core::TimeStep step)
 {
-  constexpr std::array shares{1.0, 30.0, 100.0, 300.0, 1000.0};
+  constexpr std::array shares{1.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 1e5};
   for (std::size_t k = 0;; ++k) {
     step.proximal = shares[k] * model.proximal;
     Outcome<Accepted> end = advance_by(model, old, Scheme(model, old, step));

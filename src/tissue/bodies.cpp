@@ -14,11 +14,20 @@ namespace {
 using core::Vec3;
 using Motions = Eigen::Matrix<double, 6, 6>;
 
-/// Smallest and largest coordinates of a body.
-struct Box
+/// Sums over the nodes of a body.
+struct Moments
 {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
-  Vec3 high = Vec3::Constant(std::numeric_limits<double>::lowest());
+  double count = 0.0;
+  Vec3 first = Vec3::Zero();
+  core::Mat3 second = core::Mat3::Zero();
+
+  Vec3 middle() const { return first / count; }
+  /// Sides of the box with the same moments, ascending; they do not depend on how the body lies.
+  Vec3 sides() const
+  {
+    const core::Mat3 spread = second / count - middle() * middle().transpose();
+    return (12.0 * core::symmetric_eigenvalues(spread)).cwiseMax(0.0).cwiseSqrt();
+  }
 };
 
 /// Whether fixed dofs leave a body no rigid motion: whether Σ m mᵀ over them has rank 6, where m
@@ -36,33 +45,36 @@ Bodies bodies_of(const mesh::Mesh& mesh, const fem::Dirichlet& fixed)
   int count = 0;
   Bodies bodies{{}, mesh::connected_components(mesh, count)};
   const auto parts = static_cast<std::size_t>(count);
-  std::vector<Box> box(parts);
+  std::vector<Moments> moments(parts);
   std::vector<std::set<int>> volumes(parts);
   const auto body_of = [&](int node) {
     return static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)]);
   };
   for (int node = 0; node < mesh.node_count(); ++node) {
-    Box& mine = box[body_of(node)];
-    mine.low = mine.low.cwiseMin(mesh.x[static_cast<std::size_t>(node)]);
-    mine.high = mine.high.cwiseMax(mesh.x[static_cast<std::size_t>(node)]);
+    Moments& mine = moments[body_of(node)];
+    const Vec3 x = mesh.x[static_cast<std::size_t>(node)] - mesh.x[0];
+    mine.count += 1.0;
+    mine.first += x;
+    mine.second += x * x.transpose();
   }
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     volumes[body_of(mesh.tets[t][0])].insert(mesh.region[t]);
+  std::vector<Vec3> sides;
+  for (const Moments& one : moments) sides.push_back(one.sides());
   std::vector<Motions> held(parts, Motions::Zero());
   for (int node = 0; node < mesh.node_count(); ++node)
     for (int axis = 0; axis < 3; ++axis) {
       if (!fixed.fixed(node, axis)) continue;
-      const Box& mine = box[body_of(node)];
-      const Vec3 arm = (mesh.x[static_cast<std::size_t>(node)] - mine.low) /
-                       std::max((mine.high - mine.low).norm(), 1e-300);
+      const Vec3 from = mesh.x[static_cast<std::size_t>(node)] - mesh.x[0];
+      const Vec3 arm =
+          (from - moments[body_of(node)].middle()) / std::max(sides[body_of(node)].norm(), 1e-300);
       Eigen::Matrix<double, 6, 1> motion;
       motion << Vec3::Unit(axis), arm.cross(Vec3::Unit(axis));
       held[body_of(node)] += motion * motion.transpose();
     }
   for (std::size_t c = 0; c < parts; ++c)
-    bodies.all.push_back({{volumes[c].begin(), volumes[c].end()},
-                          full(held[c]),
-                          (box[c].high - box[c].low).minCoeff()});
+    bodies.all.push_back(
+        {{volumes[c].begin(), volumes[c].end()}, full(held[c]), sides[c][0], sides[c][2]});
   return bodies;
 }
 
@@ -93,14 +105,16 @@ void refuse_free(const Bodies& bodies, const mesh::Mesh& mesh, std::size_t body)
 
 double small_inertia(const Bodies& bodies, const std::vector<Material>& materials)
 {
-  constexpr double part = 1e-3;
+  constexpr double small = 5e-3, thinnest = 1e-3;
   double least = std::numeric_limits<double>::max();
   for (const Body& body : bodies.all)
     for (int volume : body.volumes) {
       const Material& material = materials[static_cast<std::size_t>(volume)];
-      least = std::min(least, material.young / (material.density * body.extent * body.extent));
+      const double part =
+          std::max(body.thickness, thinnest * body.length) / (body.length * body.length);
+      least = std::min(least, material.young / material.density * part * part);
     }
-  return part * least;
+  return small * least;
 }
 
 }  // namespace trocar::tissue

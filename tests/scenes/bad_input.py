@@ -175,6 +175,8 @@ refuses("slave that is held", 65, ["rest", "z0"], {**touching, "-contact_pairs":
 refuses("curve of an obstacle without its columns", 65, ["wall.csv", "time,x,y,z"],
         {**touching, "-obstacle_floor_curve": written("wall.csv", "time,x\n0,0\n")}, ranks=(1, 3))
 refuses("obstacle named like a surface", 64, ["z0", "surface"], {"-obstacles": "z0", "-contact_pairs": "rest:z1:z0"})
+refuses("curve of an obstacle with columns exchanged", 65, ["swapped.csv", "time,x,y,z"],
+        {**touching, "-obstacle_floor_curve": written("swapped.csv", "time,z,y,x\n0,0,0,0\n")})
 refuses("obstacle deep in the tissue", 65, ["rest", "overlap by 0.01", "search"],
         {**touching, "-obstacle_floor_normal": "0,0,-1", "-obstacle_floor_origin": "0,0,0.03",
          "-contact_search": "0.004"}, ranks=(1, 3))

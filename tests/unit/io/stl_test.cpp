@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 
@@ -63,6 +63,13 @@ TEST(Stl, TextAndBinaryHaveTheSameTriangles)
   }
 }
 
+TEST(Stl, WordsInCapitalsAndTextBehindTheEnd)
+{
+  std::string text = text_of(tet);
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  EXPECT_EQ(io::parse_stl(text + "\n; made by hand\n", "file").size(), 4U);
+}
+
 TEST(Stl, TrianglesWithoutAreaAreLeftOut)
 {
   std::vector<mesh::Triangle> more = tet;
@@ -92,6 +99,15 @@ TEST(Stl, BadFilesAreRefused)
   EXPECT_NE(refusal_of(binary_of(nothing)).find("triangle 1"), std::string::npos);
   EXPECT_NE(refusal_of(text_of(nothing)).find("line 5"), std::string::npos);
   EXPECT_NE(refusal_of("").find("cut off"), std::string::npos);
+  EXPECT_NE(refusal_of("solid\nfacet\nfacet\nendsolid").find("line 3"), std::string::npos);
+  EXPECT_NE(refusal_of("solid\nfacet\nvertex 0 0 0\nendsolid").find("line 4"), std::string::npos);
+  std::vector<mesh::Triangle> two = tet;  // the second part is inside out
+  for (mesh::Triangle triangle : inside) {
+    for (Vec3& x : triangle) x.x() += 2.0;
+    two.push_back(triangle);
+  }
+  EXPECT_NE(refusal_of(text_of(two)).find("inside out at (2"), std::string::npos)
+      << refusal_of(text_of(two));
   EXPECT_NE(refusal_of("solid\nendsolid\n").find("no triangles"), std::string::npos);
   EXPECT_NE(refusal_of(binary_of(tet).substr(0, 200)).find("file"), std::string::npos);
   const std::string text = text_of(tet);

@@ -1,56 +1,21 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "law/cone_newton.hpp"
 #include "law/solve.hpp"
+#include "support/cones.hpp"
 
 // Friction cones: problems made from known answers.
 namespace trocar::law {
 namespace {
 
-/// A problem with `groups` cones, whose answer is known: 30 % open, 35 % slip, the rest stick.
-struct Known
-{
-  Problem problem;
-  VecX lambda, delta;
-};
+using test::Cones;
+using Known = test::KnownCones;
 
 Known known(int groups, double friction, unsigned seed)
 {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> part(0.0, 1.0);
-  const auto rows = static_cast<Eigen::Index>(3 * groups);
-  Known made{{}, VecX::Zero(rows), VecX::Zero(rows)};
-  // Points of a half space: compliance falls as one over the distance.
-  std::vector<core::Vec3> at;
-  for (int k = 0; k < groups; ++k) at.push_back(10.0 * core::Vec3(part(random), part(random), 0.0));
-  made.problem.W = MatX::Zero(rows, rows);
-  for (int i = 0; i < groups; ++i)
-    for (int j = 0; j < groups; ++j) {
-      const core::Vec3 apart = at[static_cast<std::size_t>(i)] - at[static_cast<std::size_t>(j)];
-      const double far = std::sqrt(apart.squaredNorm() + 1.0);
-      core::Mat3 block = core::Mat3::Identity() + 0.3 * apart * apart.transpose() / (far * far);
-      made.problem.W.block<3, 3>(3 * i, 3 * j) = (i == j ? 1.5e-3 : 1e-3) / far * block;
-    }
-  for (int k = 0; k < groups; ++k) {
-    const double kind = part(random), angle = 2.0 * M_PI * part(random);
-    const Eigen::Vector2d e(std::cos(angle), std::sin(angle));
-    auto lambda = made.lambda.segment<3>(3 * k);
-    auto delta = made.delta.segment<3>(3 * k);
-    if (kind < 0.3) {
-      delta << 1e-3 * (0.1 + part(random)), 1e-3 * e;
-    } else {
-      lambda[0] = 0.1 + part(random);
-      const bool slips = kind < 0.65;
-      lambda.tail<2>() = (slips ? 1.0 : 0.8 * part(random)) * friction * lambda[0] * e;
-      if (slips) delta.tail<2>() = -1e-3 * (0.1 + part(random)) * e;
-    }
-    made.problem.blocks.push_back({3 * k, Law::cone(friction), k});
-  }
-  made.problem.g = made.delta - made.problem.W * made.lambda;
-  return made;
+  return test::known_cones(Cones::half_space, groups, friction, seed);
 }
 
 TEST(ConeNewton, FindsAKnownAnswer)

@@ -153,6 +153,46 @@ TEST(HeldByContact, ABodyInNoPairNeedsSupports)
   EXPECT_NE(refusal_of(scene).find("part 2 of 2"), std::string::npos);
 }
 
+// A slender strip on two bars, across which it sags: small beside its bending stiffness too.
+TEST(HeldByContact, AStripOnTwoBars)
+{
+  step::Scene scene;
+  test::BlockShape shape{20, 2, 1, Vec3(0.1, 0.01, 0.002)};
+  shape.quadratic = true;
+  scene.mesh = test::block(shape);
+  mesh::SurfaceGroup ends{"ends", {}}, middle{"middle", {}};
+  for (const mesh::Face& face : mesh::surface_group(scene.mesh, "z0").faces) {
+    double x = 0.0;
+    for (int node : face) x += scene.mesh.x[static_cast<std::size_t>(node)].x() / 3.0;
+    (std::abs(x - 0.05) > 0.04 ? ends : middle).faces.push_back(face);
+  }
+  scene.mesh.surfaces.push_back(ends);
+  scene.tissue.model = tissue::Model::linear;
+  scene.tissue.materials = {{1e7, poisson, density, 0.0, 0.0}};
+  scene.tissue.boundary.gravity = Vec3(0, 0, -g);
+  scene.contact.obstacles = {{"bars"}};
+  scene.contact.pairs = {{"bars", "ends", "bars", 0.3}};
+  scene.time.is_static = true;
+  const test::Run run = test::run(scene);
+  const double weight = density * g * 0.1 * 0.01 * 0.002;
+  EXPECT_NEAR(run.reports.back().contact[0].force.z(), -weight, 1e-7 * weight);
+  EXPECT_LE(run.reports.back().linearisations, 12);
+}
+
+// What the laws may leave open is small beside the forces of a stiff body too.
+TEST(HeldByContact, AStiffBody)
+{
+  for (const double stiff : {1e8, 1e9, 1e10})
+    for (const double friction : {0.0, 0.3}) {
+      step::Scene scene = on_slope(0.0);
+      scene.tissue.materials[0].young = stiff;
+      scene.contact.pairs[0].friction = friction;
+      const test::Run run = test::run(scene);
+      const double weight = density * g * wide * wide * high;
+      EXPECT_NEAR(run.reports.back().contact[0].force.z(), -weight, 1e-7 * weight) << stiff;
+    }
+}
+
 /// Blocks on one another, soft and stiff ones in turn, on the floor.
 step::Scene tower(int blocks, double friction)
 {

@@ -90,5 +90,31 @@ TEST(Overlap, BeyondTheSearchIsRefused)
   }
 }
 
+// The far sides of thin bodies are no overlap: two plates apart, each with its whole skin in the
+// pair, and the search distance larger than a plate is thick.
+TEST(Overlap, FarSidesOfThinBodiesAreNone)
+{
+  test::BlockShape below{6, 6, 1, Vec3(0.03, 0.03, 0.004)}, above = below;
+  above.map = [](const Vec3& X) { return Vec3(X + Vec3(0.001, 0.002, 0.0045)); };
+  step::Scene scene;
+  scene.mesh = test::joined(test::block(below), test::block(above));
+  for (const std::string body : {"a_", "b_"}) {
+    mesh::SurfaceGroup skin{body + "skin", {}};
+    for (const char* side : {"x0", "x1", "y0", "y1", "z0", "z1"})
+      for (const mesh::Face& face : mesh::surface_group(scene.mesh, body + side).faces)
+        skin.faces.push_back(face);
+    scene.mesh.surfaces.push_back(skin);
+  }
+  scene.tissue.model = tissue::Model::linear;
+  scene.tissue.materials.assign(2, {5000.0, 0.3, 1000.0, 0.0, 0.0});
+  scene.tissue.boundary.fixed = {{"a_z0", 7}, {"b_z1", 7}};
+  scene.contact.pairs = {{"skins", "b_skin", "a_skin", 0.0, 1.0 / 0.0, true, 0.006}};
+  scene.time.is_static = true;
+  const test::Run run = test::run(scene);
+  EXPECT_TRUE(run.states[0].contact.pairs[0].overlapped.empty());
+  EXPECT_LT(moved(run), 1e-12);
+  EXPECT_EQ(run.reports[0].contact[0].slipping, 0);
+}
+
 }  // namespace
 }  // namespace trocar
