@@ -17,7 +17,7 @@ tet = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"a\"\n$End
 refuses("missing mesh", 65, ["nowhere.msh"], {"-mesh": "nowhere.msh"}, ranks=(1, 3))
 refuses("no mesh option", 64, ["-mesh"], {}, remove=["-mesh"])
 refuses("empty mesh", 65, ["empty.msh", "empty"], {"-mesh": written("empty.msh", "")})
-refuses("two meshes with one group", 65, ["z0", "group of", "another name"],
+refuses("two meshes with one group", 65, ["beam", "group of", "another name"],
         {"-mesh": small_block() + "," + small_block()}, ranks=(1, 3))
 refuses("second mesh missing", 65, ["nowhere.msh"], {"-mesh": small_block() + ",nowhere.msh"}, ranks=(1, 3))
 refuses("broken mesh", 65, ["broken.msh"], {"-mesh": written("broken.msh", tet[:150])})
