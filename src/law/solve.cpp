@@ -113,23 +113,20 @@ Multipliers settle_bounds(const Problem& problem, const Settings& settings)
   return result;
 }
 
-}  // namespace
-
-namespace {
+constexpr int most_newton = 30;  ///< steps of `cone_newton`
 
 /// Newton's method on all rows from the start, then from what an interior point comes to. Bodies
 /// that touch slip, stick and open at many corners: bounds that are settled in turn come to rest
 /// slowly or not at all there.
 Multipliers solve_touching(const Problem& problem, const Settings& settings)
 {
-  constexpr int most = 30;
-  Multipliers result = cone_newton(problem, settings, most);
+  Multipliers result = cone_newton(problem, settings, most_newton);
   if (result.converged || !all_for_cone_interior(problem)) return result;
   const Multipliers inner = cone_interior(problem, settings);
   Problem again = problem;
   if (inner.lambda.size() == problem.rows()) again.start = inner.lambda;
   const int before = result.iterations + inner.iterations;
-  result = cone_newton(again, settings, most);
+  result = cone_newton(again, settings, most_newton);
   result.iterations += before;
   return result;
 }
@@ -158,7 +155,7 @@ Multipliers solve(const Problem& problem, const Settings& settings)
   if (!newton || settled.converged || settled.lambda.size() != problem.rows()) return settled;
   Problem again = problem;
   again.start = settled.lambda;
-  Multipliers result = cone_newton(again, settings, 30);
+  Multipliers result = cone_newton(again, settings, most_newton);
   return result.converged ? result : settled;
 }
 

@@ -9,6 +9,7 @@
 #include "step/newton.hpp"
 
 namespace trocar::step {
+namespace {
 
 // A step as in both papers. Every body moves freely (part 2). The rows that couple the bodies (3)
 // are solved in one small dense problem (4). Its multipliers correct the bodies (5). Parts 2 to 5
@@ -39,6 +40,8 @@ Outcome<Accepted> advance_static(Model& model, const State& old, core::TimeStep 
     if (!again || k + 1 == shares.size()) return end;
   }
 }
+
+}  // namespace
 
 // Where bodies meet or part, velocities jump, and a difference over three states overshoots: one
 // impact becomes several. With BDF2 such a step is repeated with backward Euler, and BDF2 begins
