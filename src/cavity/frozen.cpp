@@ -155,7 +155,7 @@ core::Outcome<VecX> next_pressures(const Cavities& cavities, const State& state,
                      "its volume does not grow with the pressure any more (limit point near p = " +
                          core::shown(p[here.at] + change[here.at]) + " Pa)");
     before = here.worst;
-    step = core::solve_square(here.slope, -here.volume);
+    step = core::Square(here.slope).solve(-here.volume);
     change += step;
     if (!to_the_root) break;
   }

@@ -8,7 +8,7 @@
 
 namespace trocar::contact {
 
-State start(const std::vector<Pair>& pairs, const Deformation& now)
+State start(const std::vector<Pair>& pairs, const Deformation& now, core::Ledger& ledger)
 {
   constexpr double farther = 3.0;  // how deep an overlap is looked for, in search distances
   State state;
@@ -18,6 +18,7 @@ State start(const std::vector<Pair>& pairs, const Deformation& now)
     Pair wide = pairs[p];
     wide.search *= farther;
     if (!near(wide, now)) continue;
+    ledger.contact_queries += 2;
     for (const Meeting& at : meet(wide, now))
       if (at.gap < -pairs[p].search)
         throw core::data_error("option -contact_pairs: the surfaces of pair '" + pairs[p].name +
@@ -48,9 +49,10 @@ namespace {
 
 /// Where the friction of a corner is measured from after the step: from the old anchor while it
 /// sticks, from here where it slips.
-void anchor(const Group& group, const Contacts& contacts, const Deformation& now, Touch& touch)
+void anchor(const Group& group, bool sticks, const Contacts& contacts, const Deformation& now,
+            Touch& touch)
 {
-  if (touch.stuck && group.touch) {
+  if (sticks && group.touch) {
     touch.slave = group.touch->slave;
     touch.master = group.touch->master;
     touch.apart = group.touch->apart;
@@ -71,7 +73,7 @@ void add_forces(const Group& group, const Contacts& contacts, const Deformation&
 {
   const Vec3 force = group.frame * touch.lambda;
   report.force += force;
-  report.area += touch.area;
+  report.area += group.meeting.area;
   report.obstacle_work -= force.dot(obstacle_moved(contacts, group.pair, now.t) -
                                     obstacle_moved(contacts, group.pair, contacts.start_t));
   report.normal_work += touch.lambda[0] * group.frame.col(0).dot(moved_apart(group, contacts, now));
@@ -100,18 +102,18 @@ State accept(const Contacts& contacts, const Ending& ending, const Deformation& 
     tell(group.meeting, report);
     Touch touch;
     touch.node = group.meeting.node;
-    touch.area = group.meeting.area;
     for (int k = 0; k < group.rows; ++k) touch.lambda[k] = ending.lambda[group.first + k];
     if (!(touch.lambda[0] > 0.0)) continue;
     add_forces(group, contacts, now, touch, report);
     const Vec3 slip = group.rows > 1 ? slip_of(group, contacts, now) : Vec3::Zero();
-    touch.stuck = group.rows > 1 && slip.norm() <= tolerance;
-    if (!touch.stuck) report.friction_work += touch.lambda.dot(slip);
-    ++(touch.stuck ? report.sticking : report.slipping);
-    report.corners.back().state = touch.stuck ? CornerReport::sticks : CornerReport::slips;
-    report.corners.back().force = group.frame * touch.lambda;
-    report.corners.back().pressure = touch.lambda[0] / touch.area;
-    if (group.rows > 1) anchor(group, contacts, now, touch);
+    const bool sticks = group.rows > 1 && slip.norm() <= tolerance;
+    if (!sticks) report.friction_work += touch.lambda.dot(slip);
+    ++(sticks ? report.sticking : report.slipping);
+    CornerReport& corner = report.corners.back();
+    corner.state = sticks ? CornerReport::sticks : CornerReport::slips;
+    corner.force = group.frame * touch.lambda;
+    corner.pressure = touch.lambda[0] / corner.area;
+    if (group.rows > 1) anchor(group, sticks, contacts, now, touch);
     state.pairs[static_cast<std::size_t>(group.pair)].touches.push_back(std::move(touch));
   }
   return state;

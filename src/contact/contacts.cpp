@@ -116,8 +116,7 @@ void add_group(const Contacts& contacts, const Deformation& now, Group& group, c
     const constraint::Anchor& master = group.touch ? group.touch->master : at.master;
     for (int k = 1; k < 3; ++k)
       rows.push_back(row_between(slave, master, group.frame.col(k), slip[k]));
-    group.bound = pair.shear * at.area;
-    law = law::Law::capped_cone(pair.friction, group.bound);
+    law = law::Law::capped_cone(pair.friction, pair.shear * at.area);
   }
   group.rows = static_cast<int>(rows.size());
   for (int k = 0; k < group.rows && group.touch; ++k)
@@ -134,6 +133,7 @@ Rows add_rows(const Contacts& contacts, const Deformation& now, constraint::Set&
   for (std::size_t p = 0; p < contacts.pairs.size(); ++p) {
     const Pair& pair = contacts.pairs[p];
     if (!near(pair, now)) continue;
+    ++rows.queries;
     for (Meeting& meeting : meet(pair, now)) {
       Group group{static_cast<int>(p), std::move(meeting), nullptr, core::Mat3::Zero()};
       if (!contacts.state.pairs.empty()) {

@@ -8,6 +8,7 @@
 #include "contact/mortar.hpp"
 #include "contact/settings.hpp"
 #include "contact/state.hpp"
+#include "core/ledger.hpp"
 #include "fem/dirichlet.hpp"
 
 // Bodies and obstacles that touch: unilateral contact and friction (docs/theory.md section 14).
@@ -19,8 +20,8 @@ std::vector<Pair> pairs_of(const Settings& settings, const mesh::Mesh& mesh,
                            const fem::Dirichlet& fixed);
 
 /// The state of bodies as they are given. With `Pair::closed` an overlap of corners is kept. Throws
-/// Failure (65) with the place where it is more than the search distance.
-State start(const std::vector<Pair>& pairs, const Deformation& now);
+/// Failure (65) with the place where it is more than the search distance. Not collective.
+State start(const std::vector<Pair>& pairs, const Deformation& now, core::Ledger& ledger);
 
 /// Pairs and their state at the start of the step. Borrows everything.
 struct Contacts
@@ -40,7 +41,6 @@ struct Group
   core::Mat3 frame;    ///< columns n, t1, t2
   int first = -1;      ///< its first row in the set
   int rows = 1;
-  double bound = 0.0;  ///< limit of the shear force [N]
 };
 
 /// All rows of a geometry, in a set.
@@ -48,6 +48,7 @@ struct Rows
 {
   std::vector<Group> groups;
   int first = 0, count = 0;  ///< rows of the set
+  int queries = 0;           ///< pairs whose surfaces were clipped with each other
 };
 
 /// Adds the rows of all pairs at the displacement of `now`. λ > 0 of a normal row pushes the bodies

@@ -1,6 +1,15 @@
 #include "contact/flats.hpp"
 
 namespace trocar::contact {
+namespace {
+
+/// From the coordinates of its file to where an obstacle is at time t [m].
+Vec3 shift_of(const Obstacle& obstacle, double t)
+{
+  return obstacle.origin + obstacle.moved(t);
+}
+
+}  // namespace
 
 std::vector<Flat> flats(const Surface& surface, const Deformation& now)
 {
@@ -21,7 +30,7 @@ std::vector<Flat> flats(const Surface& surface, const Deformation& now)
 std::vector<Flat> flats(const Obstacle& obstacle, double t)
 {
   std::vector<Flat> all;
-  const Vec3 by = obstacle.origin + obstacle.moved(t);
+  const Vec3 by = shift_of(obstacle, t);
   for (std::size_t f = 0; f < obstacle.skin->faces.size(); ++f) {
     Triangle at = obstacle.skin->triangle(f);
     for (Vec3& x : at) x += by;
@@ -33,7 +42,8 @@ std::vector<Flat> flats(const Obstacle& obstacle, double t)
 Bounds bounds_of(const Obstacle& obstacle, double t)
 {
   Bounds bounds;
-  for (const Vec3& x : obstacle.skin->x) bounds.add(x + obstacle.origin + obstacle.moved(t));
+  const Vec3 by = shift_of(obstacle, t);
+  for (const Vec3& x : obstacle.skin->x) bounds.add(x + by);
   return bounds;
 }
 

@@ -114,6 +114,11 @@ class Mortar
   {
     master_ = std::get_if<Surface>(&pair_.master);
     others_ = master_ ? flats(*master_, now_) : flats(std::get<Obstacle>(pair_.master), now_.t);
+    const Box reach = bounds_of(slave_, now_).grown(pair_.search);
+    const auto apart = [&](const Flat& other) {
+      return !bg::intersects(reach, other.bounds().grown(0.0));
+    };
+    others_.erase(std::remove_if(others_.begin(), others_.end(), apart), others_.end());
     std::vector<std::pair<Box, int>> boxes;
     for (std::size_t k = 0; k < others_.size(); ++k)
       boxes.emplace_back(others_[k].bounds().grown(0.0), static_cast<int>(k));
@@ -176,12 +181,13 @@ class Mortar
 
   void against(const Obstacle& obstacle)
   {
+    const Vec3 by = obstacle.moved(now_.t);
     for (const Flat& mine : flats(slave_, now_)) {
       const FacePlaces face = slave_.places(mine.face, now_);
       const double area = 0.5 * (mine.x[1] - mine.x[0]).cross(mine.x[2] - mine.x[0]).norm();
       for (const TrianglePoint& at : triangle_points()) {
         const SlavePoint point = slave_point(face, mine, at.at, at.weight * area);
-        const Clearance there = clearance(obstacle, point.x - obstacle.moved(now_.t));
+        const Clearance there = clearance(obstacle, point.x - by);
         add(point, there.distance, -there.outward, [](double, std::map<int, double>&) {});
       }
     }

@@ -12,10 +12,8 @@ using core::Vec3;
 /// slipped: with the weights of then, from the tangential distance of then.
 struct Touch
 {
-  int node = -1;  ///< file node of the corner
-  bool stuck = false;
+  int node = -1;                     ///< file node of the corner
   Vec3 lambda = Vec3::Zero();        ///< multipliers (n, t1, t2) [N]
-  double area = 0.0;                 ///< covered ∫φ [m²]
   constraint::Anchor slave, master;  ///< weights; no master nodes: an obstacle
   Vec3 apart = Vec3::Zero();  ///< (0, t1, t2): tangential distance from slave to master then [m]
   /// Mean place of the slave then, on an obstacle, as if that had not moved; else zero [m].
@@ -26,9 +24,7 @@ struct Touch
   static void visit(Self& self, Visitor& v)
   {
     v("node", "1", self.node);
-    v("stuck", "1", self.stuck);
     v("lambda", "N", self.lambda);
-    v("area", "m^2", self.area);
     v("slave", "", self.slave);
     v("master", "", self.master);
     v("apart", "m", self.apart);

@@ -45,9 +45,4 @@ VecX Square::solve(const VecX& b) const
   return lu_.solve(b);
 }
 
-VecX solve_square(const MatX& A, const VecX& b)
-{
-  return A.partialPivLu().solve(b);
-}
-
 }  // namespace trocar::core

@@ -27,7 +27,7 @@ class Cholesky
   bool regular_ = false;
 };
 
-/// A = P L U of a regular square matrix, for several right-hand sides.
+/// A⁻¹ b of a regular square matrix (LU with partial pivoting).
 class Square
 {
  public:
@@ -46,9 +46,6 @@ bool cholesky_in_place(MatX& A);
 /// The x of least norm among all x that minimise |A x - b|, for any A (complete orthogonal
 /// decomposition).
 VecX least_squares(const MatX& A, const VecX& b);
-
-/// A⁻¹ b of a regular square matrix (LU with partial pivoting).
-VecX solve_square(const MatX& A, const VecX& b);
 
 /// Eigenvalues of a symmetric matrix, ascending, and its unit eigenvectors, one per column.
 struct SymmetricEigen

@@ -19,7 +19,7 @@ struct Ledger
   std::int64_t constraint_solves = 0;   ///< dense constraint problems solved
   std::int64_t surface_passes = 0;      ///< passes over the walls of cavities
   std::int64_t pressure_updates = 0;    ///< updates of the pressures of frozen cavities
-  std::int64_t contact_queries = 0;     ///< narrow-phase contact queries; 0: no contact search yet
+  std::int64_t contact_queries = 0;     ///< pairs of surfaces clipped with each other
   std::int64_t stress_evaluations = 0;  ///< stress fields computed for output
   std::int64_t steps = 0;               ///< accepted steps
   std::int64_t rejected_steps = 0;      ///< rejected steps, usually retried in halves

@@ -40,6 +40,8 @@ struct TimeStep
     return now;
   }
 
+  double begin() const { return start ? t : t - h; }  ///< [s]
+
   Rates rates() const
   {
     if (is_static) return {};

@@ -33,7 +33,7 @@ class Equations
         single(block, w);
     }
   }
-  VecX step() const { return core::solve_square(J_, -F_); }
+  VecX step() const { return core::Square(J_).solve(-F_); }
 
  private:
   /// Row i holds: δ_i + c λ_i = 0. A little compliance keeps redundant rows from contradicting.

@@ -148,11 +148,12 @@ Multipliers solve(const Problem& problem, const Settings& settings)
     if (result.converged) return result;
     before = result.iterations;
   }
-  if (std::none_of(problem.blocks.begin(), problem.blocks.end(), follows))
-    return solve_fixed_sets(problem, settings);
-  Multipliers settled = settle_bounds(problem, settings);
+  const bool fixed = std::none_of(problem.blocks.begin(), problem.blocks.end(), follows);
+  Multipliers settled =
+      fixed ? solve_fixed_sets(problem, settings) : settle_bounds(problem, settings);
   settled.iterations += before;
-  if (!newton || settled.converged || settled.lambda.size() != problem.rows()) return settled;
+  if (fixed || !newton || settled.converged || settled.lambda.size() != problem.rows())
+    return settled;
   Problem again = problem;
   again.start = settled.lambda;
   Multipliers result = cone_newton(again, settings, most_newton);

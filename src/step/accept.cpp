@@ -64,7 +64,7 @@ void accept_cavities(const Model& model, const core::TimeStep& now, Newton& newt
     cavity.iterations = std::max(report.linearisations, report.pressure_updates);
 }
 
-void accept_contact(const Model& model, const State& old, Newton& newton)
+void accept_contact(const Model& model, const State& old, double begin, Newton& newton)
 {
   State& next = newton.state();
   StepReport& report = newton.report();
@@ -73,7 +73,7 @@ void accept_contact(const Model& model, const State& old, Newton& newton)
   if (!newton.solution().contact) return;
   const fem::GlobalField u = model.space.gather(next.tissue.u);
   const fem::GlobalField before = model.space.gather(old.tissue.u);
-  next.contact = contact::accept({model.contact, old.contact, before, old.t},
+  next.contact = contact::accept({model.contact, old.contact, before, begin},
                                  *newton.solution().contact, {model.scene.mesh, u, next.t},
                                  model.scene.insertion.stick_tolerance, report.contact);
 }
@@ -113,7 +113,7 @@ Outcome<Accepted> accept(const Model& model, const State& old, const Scheme& sch
         model.tissue.reactions(scheme.past().tissue, next.tissue.u, now,
                                newton.solution().forces(model, next, newton.walls(), now));
   if (model.cavities) accept_cavities(model, now, newton);
-  if (!model.contact.empty()) accept_contact(model, old, newton);
+  if (!model.contact.empty()) accept_contact(model, old, now.begin(), newton);
   accept_needles(model, newton);
   model.tissue.remember_factor(next.tissue);
   if (model.scene.time.second_order && !now.start)

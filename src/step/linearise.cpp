@@ -91,6 +91,7 @@ void Newton::collect_rows(Solution& solution)
   if (!model_->contact.empty()) {
     const fem::GlobalField u = model_->space.gather(next_.tissue.u);
     solution.of_contact = contact::add_rows(contacts(), {model_->scene.mesh, u, now.t}, rows.set);
+    model_->ledger.contact_queries += solution.of_contact.queries;
   }
   solution.system = constraint::System(std::move(rows.set), std::move(bodies));
 }
@@ -106,6 +107,7 @@ void Newton::end_contact(Solution& solution) const
   if (!any && solution.of_contact.groups.empty()) return;
   solution.contact =
       contact::ending(contacts(), now, solution.of_contact, solution.lambda(), solution.mobility);
+  model_->ledger.contact_queries += solution.contact->rows.queries;
 }
 
 core::Outcome<Solution> Newton::solve_rows(solve::Linearisation& at)

@@ -27,6 +27,7 @@ Model::Model(const Scene& of, const base::Comm& comm)
   ground.emplace(scene.mesh, *locator, scene.insertion, scene.tissue.materials);
 }
 
+/// Whether a part of the mesh is on one side of a pair.
 bool Model::in_contact(std::size_t body) const
 {
   const auto touches = [&](const contact::Surface& surface) {
@@ -49,7 +50,10 @@ void Model::hold_bodies()
     if (!bodies.all[b].held && !in_contact(b)) tissue::refuse_free(bodies, scene.mesh, b);
     all = all && bodies.all[b].held;
   }
-  if (!all) proximal = tissue::small_inertia(bodies, scene.tissue.materials);
+  if (all)
+    bodies = {};
+  else
+    proximal = tissue::small_inertia(bodies, scene.tissue.materials);
 }
 
 bool Model::beams() const

@@ -26,8 +26,6 @@ struct Model
   /// The cavity walls at displacement u; empty when no volume is that of a deformed wall. Callers
   /// keep the result, so that it is computed once per displacement. Collective.
   cavity::Shape walls(const fem::OwnedField& u) const;
-  /// Whether a part of the mesh is on one side of a pair.
-  bool in_contact(std::size_t body) const;
   /// Forgets operators, factors and pressure responses of earlier steps. Not collective.
   void drop_caches();
 
@@ -40,13 +38,14 @@ struct Model
   std::optional<mesh::Locator> locator{};  ///< only with needles
   std::optional<insertion::Ground> ground{};  ///< only with needles
   std::vector<contact::Pair> contact{};
-  tissue::Bodies bodies{};  ///< only in statics
+  tissue::Bodies bodies{};  ///< only in statics where contact holds some
   double proximal = 0.0;    ///< see core::TimeStep::proximal; 0: the supports hold every body
   std::optional<cavity::Cavities> cavities{};               ///< only with cavities
   std::optional<cavity::PressureSearch> pressure_search{};  ///< only with cavities
 
  private:
   void hold_bodies();
+  bool in_contact(std::size_t body) const;
 };
 
 }  // namespace trocar::step

@@ -20,7 +20,6 @@ Newton::Newton(Model& model, const Scheme& scheme, State first)
       effort_(effort_of(model, scheme.now())),
       next_(std::move(first)),
       touched_(next_.contact),
-      t_start_(scheme.now().t - (scheme.now().start ? 0.0 : scheme.now().h)),
       walls_(model.walls(next_.tissue.u))
 {
   if (!model.contact.empty()) u_start_ = model.space.gather(next_.tissue.u);

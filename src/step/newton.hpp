@@ -55,7 +55,10 @@ class Newton
   core::Outcome<Solution> solve_rows(solve::Linearisation& at);
   core::Outcome<constraint::Saddle> meet_laws(solve::Linearisation& at, constraint::System& system);
   void correct(Solution& solution);
-  contact::Contacts contacts() const { return {model_->contact, touched_, u_start_, t_start_}; }
+  contact::Contacts contacts() const
+  {
+    return {model_->contact, touched_, u_start_, scheme_->now().begin()};
+  }
   void end_contact(Solution& solution) const;
   void measure();
   double largest_increment() const;
@@ -69,7 +72,6 @@ class Newton
   State next_;
   contact::State touched_;    ///< contact at the start of the step
   fem::GlobalField u_start_;  ///< displacement there; empty without pairs
-  double t_start_;            ///< time there [s]
   cavity::Shape walls_;
   StepReport report_;
   std::optional<Solution> solution_;                           ///< of the last linearisation

@@ -72,7 +72,7 @@ Outcome<Accepted> initial_state(Model& model)
   if (model.cavities) state.cavities = cavity::start(*model.cavities);
   if (!model.contact.empty()) {
     const fem::GlobalField none = model.space.gather(state.tissue.u);
-    state.contact = contact::start(model.contact, {model.scene.mesh, none});
+    state.contact = contact::start(model.contact, {model.scene.mesh, none}, model.ledger);
   }
   const TimeSettings& time = model.scene.time;
   const core::TimeStep start = core::TimeStep::at_start(time.step);

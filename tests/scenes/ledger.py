@@ -66,6 +66,13 @@ check(work["assemblies"] == 1 and work["factorisations"] == 1,
 apart = {"-obstacles": "floor", "-obstacle_floor_origin": "0,0,-0.5", "-contact_pairs": "rest:skin:floor"}
 free = ledger(completed({**layers, "-time_end": "0.5"}))
 check(free == ledger(completed({**layers, "-time_end": "0.5", **apart})), "a pair that is apart changes no count")
+check(free["contact_queries"] == free["repeated_steps"] == 0, "and is not looked at closely")
+ball = options("ball_on_block.opts")
+ball.update({"-mesh": geometry("ball_on_block"), "-time_end": "0.2"})
+work = [ledger(completed(ball, ranks)) for ranks in (1, 2)]
+check(work[0]["contact_queries"] >= 2 * work[0]["constraint_solves"] > 0,
+      f"surfaces in reach meet at every iterate and at its end: {work[0]['contact_queries']}")
+check(work[0] == work[1], "as often on two ranks")
 
 gel = options("gel_insertion.opts")
 gel.update({"-time_end": "0.4"})

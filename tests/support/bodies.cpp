@@ -1,42 +1,24 @@
 #include "support/bodies.hpp"
 
+#include "mesh/join.hpp"
+
 namespace trocar::test {
 namespace {
 
-void append(const mesh::Mesh& one, const std::string& prefix, mesh::Mesh& all)
+mesh::Mesh prefixed(mesh::Mesh mesh, const std::string& prefix)
 {
-  const int nodes = all.node_count(), tets = all.tet_count();
-  const int volumes = static_cast<int>(all.volumes.size());
-  all.x.insert(all.x.end(), one.x.begin(), one.x.end());
-  for (mesh::Tet tet : one.tets) {
-    for (int& node : tet) node += nodes;
-    all.tets.push_back(tet);
-  }
-  for (mesh::Middles middles : one.middles) {
-    for (int& node : middles) node += nodes;
-    all.middles.push_back(middles);
-  }
-  for (int region : one.region) all.region.push_back(region + volumes);
-  for (const std::string& volume : one.volumes) all.volumes.push_back(prefix + volume);
-  for (mesh::SurfaceGroup surface : one.surfaces) {
-    surface.name = prefix + surface.name;
-    for (mesh::Face& face : surface.faces)
-      for (int& node : face) node += nodes;
-    all.surfaces.push_back(surface);
-  }
-  for (int n = 0; n < one.node_count(); ++n) all.node_tag.push_back(nodes + n + 1);
-  for (int t = 0; t < one.tet_count(); ++t) all.elem_tag.push_back(tets + t + 1);
+  for (std::string& volume : mesh.volumes) volume = prefix + volume;
+  for (mesh::SurfaceGroup& surface : mesh.surfaces) surface.name = prefix + surface.name;
+  for (mesh::PointGroup& point : mesh.points) point.name = prefix + point.name;
+  return mesh;
 }
 
 }  // namespace
 
 mesh::Mesh joined(const mesh::Mesh& a, const mesh::Mesh& b)
 {
-  mesh::Mesh all;
+  mesh::Mesh all = mesh::joined({prefixed(a, "a_"), prefixed(b, "b_")});
   all.file = "test bodies";
-  append(a, "a_", all);
-  append(b, "b_", all);
-  if (all.quadratic()) all.index_middles();
   return all;
 }
 

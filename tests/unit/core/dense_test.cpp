@@ -16,7 +16,7 @@ TEST(Cholesky, SolvesAsManyColumnsAsThereAre)
   EXPECT_LT((A * X - MatX::Identity(3, 3)).norm(), 1e-15);
   const VecX b = VecX::LinSpaced(3, 1.0, 2.0);
   EXPECT_LT((A * factor.solve(b) - b).norm(), 1e-15);
-  EXPECT_LT((solve_square(A, b) - factor.solve(b)).norm(), 1e-15);
+  EXPECT_LT((Square(A).solve(b) - factor.solve(b)).norm(), 1e-15);
   EXPECT_EQ(factor.solve(MatX(3, 0)).cols(), 0);  // a needle that nothing touches
   EXPECT_EQ(factor.solve(MatX(3, 0)).rows(), 3);
 }

@@ -58,15 +58,14 @@ struct Found
 Found pressed(const step::Scene& scene)
 {
   const test::Run run = test::run(scene);
-  const contact::PairState& pair = run.states.back().contact.pairs[0];
   const contact::PairReport& report = run.reports.back().contact[0];
   double moment = 0.0, force = 0.0;
   Found found{};
-  for (const contact::Touch& touch : pair.touches) {
-    const Vec3& X = scene.mesh.x[static_cast<std::size_t>(touch.node)];
-    moment += touch.lambda[0] * (X.x() * X.x() + X.y() * X.y());
-    force += touch.lambda[0];
-    found.pressure = std::max(found.pressure, touch.lambda[0] / touch.area);
+  for (const contact::CornerReport& corner : report.corners) {
+    const Vec3& X = scene.mesh.x[static_cast<std::size_t>(corner.node)];
+    moment += corner.force.norm() * (X.x() * X.x() + X.y() * X.y());
+    force += corner.force.norm();
+    found.pressure = std::max(found.pressure, corner.pressure);
   }
   EXPECT_NEAR(report.force.norm(), force, 1e-9 * force);
   found.radius = std::sqrt(2.5 * moment / force);

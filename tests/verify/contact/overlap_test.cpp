@@ -108,7 +108,8 @@ TEST(Overlap, FarSidesOfThinBodiesAreNone)
   scene.tissue.model = tissue::Model::linear;
   scene.tissue.materials.assign(2, {5000.0, 0.3, 1000.0, 0.0, 0.0});
   scene.tissue.boundary.fixed = {{"a_z0", 7}, {"b_z1", 7}};
-  scene.contact.pairs = {{"skins", "b_skin", "a_skin", 0.0, 1.0 / 0.0, true, 0.006}};
+  scene.contact.pairs = {{"skins", "b_skin", "a_skin"}};
+  scene.contact.pairs[0].search = 0.006;
   scene.time.is_static = true;
   const test::Run run = test::run(scene);
   EXPECT_TRUE(run.states[0].contact.pairs[0].overlapped.empty());

@@ -128,7 +128,7 @@ step::Scene loaded(const Patch& patch)
   scene.tissue.boundary.tractions.push_back(
       {"b_z1", turn(patch.angle) * Vec3(0, 0, -pressure), std::nullopt});
   scene.laws.tolerance = 1e-11;  // first it falls some hundred metres
-  scene.tissue.newton_tolerance = patch.quadratic ? 1e-7 : 1e-9;  // of the least loaded node
+  scene.tissue.newton_tolerance = patch.quadratic ? 1e-7 : 1e-10;  // of the least loaded node
   return scene;
 }
 
@@ -152,10 +152,10 @@ TEST(ContactPatch, StressIsUniformInABodyThatContactHolds)
           double worst = 0.0;
           for (Eigen::Index t = 0; t < stress.size(); t += 6)
             worst = std::max(worst, (stress.segment<6>(t) - expected).cwiseAbs().maxCoeff());
-          EXPECT_LT(worst, 2e-9 * pressure);
+          EXPECT_LT(worst, (friction > 0.0 ? 1e-9 : 1e-10) * pressure);
           const double wider = 1.0 + poisson * pressure / young;  // than the area of the load
-          for (const contact::Touch& touch : run.states.back().contact.pairs[0].touches)
-            EXPECT_NEAR(wider * wider * touch.lambda[0] / touch.area, pressure, 1e-7 * pressure);
+          for (const contact::CornerReport& corner : run.reports.back().contact[0].corners)
+            EXPECT_NEAR(wider * wider * corner.pressure, pressure, 1e-7 * pressure);
         }
 }
 

@@ -47,10 +47,10 @@ TEST(Slope, ABlockSlidesWithTheAccelerationOfCoulombsLaw)
     scene.time.end = 4.0;
     const test::Run run = test::run(scene);
     for (std::size_t n = 1; n < run.states.size(); ++n)
-      for (const contact::Touch& touch : run.states[n].contact.pairs[0].touches) {
-        const double normal = touch.lambda[0], shear = touch.lambda.tail<2>().norm();
+      for (const contact::CornerReport& corner : run.reports[n].contact[0].corners) {
+        const double normal = -corner.force.z(), shear = corner.force.head<2>().norm();
         EXPECT_LE(shear, friction * normal * (1.0 + 1e-6) + 1e-9) << n;
-        if (touch.stuck) continue;
+        if (corner.state != contact::CornerReport::slips) continue;
         EXPECT_NEAR(shear, friction * normal, 1e-6 * normal + 1e-9) << n;
       }
     const std::size_t last = run.states.size() - 1;

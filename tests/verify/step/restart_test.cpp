@@ -196,6 +196,50 @@ TEST(RestartOf, Contact)
   }
 }
 
+// An obstacle that moves, begins inside the block and comes loose again; both time schemes, of
+// which BDF2 repeats the steps where corners meet or part.
+TEST(RestartOf, ContactWithAMovingObstacle)
+{
+  for (const bool second_order : {false, true}) {
+    SCOPED_TRACE(second_order);
+    Scene scene = into_block(false);
+    scene.needles[0].motion.velocity = 0.01;
+    scene.time.second_order = second_order;
+    scene.energy = true;
+    contact::Obstacle plate{"plate"};
+    plate.normal = Vec3(0, 0, -1);
+    plate.origin = Vec3(0, 0, 0.0397);
+    plate.path = core::Csv{
+        "path", {"time", "x", "y", "z"}, {{0, 0, 0, 0}, {0.4, 1e-4, 0, -5e-4}, {0.6, 0, 0, 1e-3}}};
+    scene.contact.obstacles = {plate};
+    scene.contact.pairs = {{"plate", "z1", "plate", 0.3}};
+    expect_equal_from(scene, uneven, 4);
+    const test::Run run = test::run(scene, uneven);
+    EXPECT_FALSE(run.states[4].contact.pairs[0].overlapped.empty());
+    EXPECT_FALSE(run.states[4].contact.pairs[0].touches.empty());
+    EXPECT_TRUE(run.states.back().contact.pairs[0].touches.empty());
+    EXPECT_EQ(run.ledger.repeated_steps > 0, second_order);
+  }
+}
+
+// Bodies that contact alone holds, in quasi-static steps.
+TEST(RestartOf, StaticsOfABodyOnAMovingFloor)
+{
+  for (const auto model : {tissue::Model::linear, tissue::Model::corotational}) {
+    Scene scene;
+    scene.mesh = test::block({3, 3, 2, Vec3(0.03, 0.03, 0.02)});
+    scene.tissue.model = model;
+    scene.tissue.materials = {{5000.0, 0.3, 1000.0, 0.0, 0.0}};
+    scene.tissue.boundary.gravity = Vec3(1.0, 0, -9.0);
+    contact::Obstacle floor{"floor"};
+    floor.path = core::Csv{"path", {"time", "x", "y", "z"}, {{0, 0, 0, 0}, {1, 1e-3, 0, 2e-3}}};
+    scene.contact.obstacles = {floor};
+    scene.contact.pairs = {{"floor", "z0", "floor", 0.5}};
+    scene.time.is_static = true;
+    expect_equal_from(scene, uneven, 4);
+  }
+}
+
 // Cavities of every model beside a needle, in linear tissue, which every model can be in.
 TEST(RestartOf, EveryModelOfCavity)
 {
